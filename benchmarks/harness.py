@@ -73,6 +73,15 @@ def between(lower: float, upper: float, distribution: str = "uniform") -> Row:
     return {"distribution": distribution, "lower": lower, "upper": upper}
 
 
+def revision() -> str:
+    """Return the commit of the checkout, with a + where files differ from it."""
+    return _git("rev-parse", "--short", "HEAD") + "+" * bool(_git("status", "--porcelain", "--untracked-files=no"))
+
+
+def _git(*words: str) -> str:
+    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+
+
 def write_document(path: Path, content: Row) -> None:
     """Write a JSON document, whole or not at all."""
     draft = path.with_name(f"{path.name}.part")

@@ -1,6 +1,8 @@
 """Arguments that several commands take, and what a command writes to the terminal."""
 
 import errno
+import functools
+import math
 import os
 import shlex
 import shutil
@@ -100,7 +102,20 @@ def one_sentence() -> Iterator[None]:
 def command(panel: str, example: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Add a function to the application as the command of its name, in a group of the help and with an example."""
     added = app.command(rich_help_panel=panel, epilog=f"Example: lithobrake {example}")
-    return lambda function: added(one_sentence()(function))
+    return lambda function: added(one_sentence()(_finite(function)))
+
+
+def _finite(function: Callable[..., None]) -> Callable[..., None]:
+    """The same command, which refuses a number that is not finite, also where it would not be read."""
+
+    @functools.wraps(function)
+    def checked(*words: Any, **options: Any) -> None:
+        for name, value in options.items():
+            if isinstance(value, float) and not math.isfinite(value):
+                raise ValueError(f"--{name.replace('_', '-')} is {value}; allowed: a finite number; write one")
+        function(*words, **options)
+
+    return checked
 
 
 def _has_current_folder() -> bool:

@@ -182,13 +182,14 @@ def compare(
 ) -> None:
     """Compare two studies run by run: the difference of every result with its interval, as a page and as JSON."""
     place = arguments.given_folder(out, COMPARISON)
-    from lithobrake.files.atomic import make_folder
+    from lithobrake.files.atomic import refuse_existing
     from lithobrake.pipeline import compare_studies, comparison_files, comparison_lines, write_compared
     from lithobrake.results.study_files import json_values
 
-    make_folder(place)
-    for path in comparison_files(place):
-        arguments.refuse_written(path, force)
+    # The folder is made when there is something to write: a refusal leaves none behind.
+    refuse_existing(
+        () if force else comparison_files(place), "choose another name with --out, or replace it with --force"
+    )
     comparison = compare_studies(first, second)
     page, numbers = write_compared(comparison, place)
     lines = [*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"]

@@ -22,6 +22,8 @@ DENSITY_FACTOR = 1.5
 MOST_OF_BED = 0.95
 # Of an observation: the squares of larger ones overflow, and these say nothing either.
 LARGEST_ERROR = 1e100
+# Outputs whose variance, given the others, is a smaller part of their own follow from these: the rest is rounding.
+TIED = 1e-12
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,11 @@ class Kernels:
         if blur.any():
             # Errors are blurred into the kernel, so that it is another one wherever the scale is.
             covariance = covariance + blur[:, :, None] ** 2 * np.eye(len(columns))
-        factor = np.linalg.inv(np.linalg.cholesky(covariance))
+        root = np.linalg.cholesky(covariance)
+        left = np.diagonal(root, axis1=1, axis2=2) ** 2
+        if (left < TIED * np.diagonal(covariance, axis1=1, axis2=2)).any():
+            raise np.linalg.LinAlgError("of an output nothing but rounding is left, given the others")
+        factor = np.linalg.inv(root)
         whitened = np.einsum("pij,pj->pi", np.broadcast_to(factor, (len(standard), *factor.shape[1:])), standard)
         # All distances of points to rows are then one product of matrices, without an array [point, row, output].
         squares = self._squares(whitened, np.ascontiguousarray(factor @ seen))
@@ -205,7 +211,13 @@ def observed_density(
     blur = slope * [errors.get(name, 0.0) for name in observed] / scale
     left = standard - bed.mean @ kernels.root[places].T
     chances = log_row_weights(linear, model.row_points, model.law.weights, model.choices.widths)
-    found = kernels.log_density(places, left, blur, chances, bed.spread)
+    try:
+        found = kernels.log_density(places, left, blur, chances, bed.spread)
+    except np.linalg.LinAlgError as error:
+        raise ValueError(
+            f"{', '.join(observed)} have no density together: in the runs some of them follow from the others to "
+            "the last digit; leave such outputs out, or give each an error"
+        ) from error
     steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1) - np.log(scale).sum(axis=1)
     density: Array = np.where(inside, chance + found + steepness, -np.inf)
     return density, bed.given(kernels.root, places, left, blur)

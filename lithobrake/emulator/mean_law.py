@@ -168,8 +168,11 @@ def _evidence(terms: Terms, matrix: Array, table: Array) -> Array:
     for degree in degrees:
         used = terms.degrees <= degree
         columns, active = matrix[:, used] - matrix[:, used].mean(axis=0), terms.indices[used] > 0
-        left = _unexplained(columns, centred)
         freedom = len(matrix) - 1 - columns.shape[1]
+        if freedom < 1:
+            # As many terms as runs explain whatever there is.
+            continue
+        left = _unexplained(columns, centred)
         for k in range(len(terms.inputs)):
             without = _unexplained(columns[:, ~active[:, k]], centred)
             count = int(active[:, k].sum())

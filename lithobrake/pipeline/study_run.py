@@ -115,12 +115,12 @@ def run_study(
     refuse_hidden_orbiter(drawn.site)
     refuse_others_folder(source, out)
     _say_solver(study.solver.command, shown)
-    folder = StudyFolder(out)
-    # The bits of a least-squares fit depend on the threads of the linear algebra.
+    # The bits of a least-squares fit depend on the threads of the linear algebra. A folder is made once there is who
+    # works in it.
     with (
         one_thread(),
-        folder.alone() as note,
         DaskExecutor(scheduler) if scheduler is not None else LocalExecutor(worker_count) as executor,
+        (folder := StudyFolder(out)).alone() as note,
     ):
         design = grown(drawn, folder)
         folder.begin(source.path, source.content, setting(design.study), shown.say)

@@ -55,6 +55,8 @@ def _touchdown_problems(study: Study) -> Iterator[str]:
     if study.has_soil:
         yield from ground_checks.material_problems(study)
         yield from ground_checks.slope_problems(study)
+        yield from ground_checks.cover_problems(study)
+        yield from ground_checks.twin_problems(study)
     gravity = study.surface.gravity
     # "site" is checked where the acceleration is worked out, which needs the shape of the body (pipeline/site.py).
     if not isinstance(gravity, str) and study.bed.settle_gravity is None and reach(gravity)[0] <= 0.0:

@@ -161,9 +161,9 @@ class JourneySection(quantity.Section):
     """Most touchdowns of a lander; 1: the first touchdown alone. Absent: landers are followed to rest."""
     count: Annotated[int, quantity.Whole("", at_least=2, at_most=1_000_000)] | None = None
     """Number of journeys; a larger count keeps those of a smaller one. Absent: design.run_count."""
-    duration: Annotated[float, quantity.Number("s", above=0)] = 172_800.0
+    duration: Annotated[float, quantity.Number("s", above=0, at_most=LATE)] = 172_800.0
     """Longest journey, counted from the first touchdown, and longest flight from a state to the ground."""
-    hop_height: Annotated[float, quantity.Number("m", at_least=0)] | None = None
+    hop_height: Annotated[float, quantity.Number("m", at_least=0, at_most=1000)] | None = None
     """A lander that would rise higher above the ground than this leaves the bed and flies in the gravity of the body;
     lower hops are part of the touchdown. 0: the touchdown ends when the lander first leaves the ground, or has too
     little energy to leave it. Absent: three times the lander's largest diameter; 0 with touchdowns = 1."""

@@ -8,6 +8,7 @@ from lithobrake.study.design_sections import ExpansionSection
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.constants import FEWEST_RUNS_OF_EMULATOR
+from lithobrake.vocabulary.plain_text import show
 
 # Fewer tell no share.
 FEWEST_SAMPLES = 100
@@ -31,6 +32,9 @@ def design_problems(study: Study) -> Iterator[str]:
                 "scatter; leave it out"
             )
         return
+    kept = study.expansion.kept_outputs
+    if len(set(kept)) < len(kept):
+        yield f"expansion.kept_outputs is {show(list(kept))}; allowed: outputs, each once; leave out what stands twice"
     yield from _unbounded_problems(study, study.expansion)
     yield from _replicate_problems(study, study.expansion)
     yield from _stage_problems(study.expansion, input_count)

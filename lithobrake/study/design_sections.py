@@ -105,9 +105,9 @@ class MonteCarloSection(Section):
 class CampaignSection(Section):
     """How runs are made, and how many may fail. Nothing here changes the result of a run."""
 
-    wall_limit: Annotated[float, Number("s", above=0)] | None = None
+    wall_limit: Annotated[float, Number("s", at_least=0.1)] | None = None
     """Longest wall-clock time of a run; it is then ended and counts as failed. Absent: no limit."""
-    memory_limit: Annotated[float, Number("bytes", above=0)] | None = None
+    memory_limit: Annotated[float, Number("bytes", at_least=1e6)] | None = None
     """Largest memory of a run and all processes that it starts; above that it is ended (Linux only). Absent: no
     limit."""
     retry_count: Annotated[int, Whole("", at_least=0, at_most=100)] = 1
@@ -205,9 +205,10 @@ class AimLimit:
         """Read one; None for a text that is none."""
         match = _LIMIT.fullmatch(text)
         try:
-            return cls(match[1], match[2], float(match[3])) if match else None
+            limit = cls(match[1], match[2], float(match[3])) if match else None
         except ValueError:
             return None
+        return limit if limit is not None and math.isfinite(limit.number) else None
 
     def keeps(self, value: float | None) -> bool:
         """Whether a value keeps it; what is not known does not."""
@@ -218,7 +219,7 @@ class OrbitSection(Section):
     """Heliocentric orbit of the body, or of the binary that it is in, by osculating elements (ecliptic and equinox of
     J2000), as a catalogue of small bodies has them. The examples are those of Didymos [SBDB-Didymos]."""
 
-    semi_major_axis_au: Annotated[float, Number("", above=0)] = Field(examples=["1.64271"])
+    semi_major_axis_au: Annotated[float, Number("", at_least=0.01, at_most=1e5)] = Field(examples=["1.64271"])
     """Semi-major axis in astronomical units."""
     eccentricity: Annotated[float, Number("", at_least=0, below=1)] = Field(examples=["0.383123"])
     """Eccentricity."""

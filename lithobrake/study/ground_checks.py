@@ -34,6 +34,10 @@ SKINS, SKINS_AT_LANDER = 0.5, 0.7
 LEAST_SOLID = 0.4
 # Friction over the tangent of a slope with which beds of hulls were seen to hold, two to three grains deep.
 LEAST_FRICTION = 0.4
+# The stiffest grains [Pa].
+STIFFEST = 1e13
+# Part of the ground on which grains lie one beside the other, at least.
+LEAST_COVER = 0.01
 
 
 def size_problems(study: Study, radius: float) -> Iterator[str]:
@@ -111,6 +115,12 @@ def stiffness_problems(study: Study, modulus: Scalar) -> Iterator[str]:
     cannot take them on.
     """
     highest = usual_reach(study.grain.young_modulus)[1]
+    if highest > STIFFEST:
+        yield (
+            f"grain.young_modulus reaches {highest:.3g} Pa; allowed: at most {STIFFEST:g} Pa, ten times that of "
+            "diamond, as time steps shorten with it; lower it"
+        )
+        return
     # The median of some distributions takes SciPy, and hardly any study is near.
     if highest > STIFFER * usual_reach(modulus)[0] and highest > STIFFER * (poured := median(modulus)):
         yield (
@@ -210,6 +220,28 @@ def slope_problems(study: Study) -> Iterator[str]:
             f'bed.sides = "periodic" is friction of at least {least:.3g}, {LEAST_FRICTION:g} of the tangent of the '
             "slope, as such grains run down the slope otherwise; raise grain.friction, lower the slope, or set "
             'bed.sides = "walls"'
+        )
+
+
+def cover_problems(study: Study) -> Iterator[str]:
+    """Grains that are too few for the ground of their bed; for this program's own soil."""
+    largest = _grain_sizes(study)[1]
+    area, here = study.bed.grain_count * 0.25 * math.pi * largest * largest, math.prod(study.bed.width)
+    if area < LEAST_COVER * here:
+        yield (
+            f"bed.width is {study.bed.width[0]:g} x {study.bed.width[1]:g} m, of which {study.bed.grain_count} grains "
+            f"cover {100.0 * area / here:.2g} %; allowed: at most {area / LEAST_COVER:.3g} m2, a hundredth of which "
+            "they cover; narrow the bed, or raise bed.grain_count"
+        )
+
+
+def twin_problems(study: Study) -> Iterator[str]:
+    """A shift of the impact point, for runs that measure chaos, by which another grain is hit."""
+    smallest = _grain_sizes(study)[0]
+    if study.design.side_runs and study.design.twin_shift > smallest:
+        yield (
+            f"design.twin_shift is {study.design.twin_shift:g} m; allowed: at most {smallest:g} m, the smallest grain, "
+            "as another place says nothing of chaos; lower it"
         )
 
 

@@ -67,7 +67,7 @@ def ground_tables(tables: dict[str, Any]) -> dict[str, Any]:
     if isinstance(ground, str):
         if ground.lower() not in GROUND_PRESETS:
             names = ", ".join(GROUND_PRESETS)
-            text = f"is {show(ground)}; allowed: a table [ground], or a name out of {names}"
+            text = f"ground is {show(ground)}; allowed: a table [ground], or a name out of {names}"
             raise PydanticCustomError("quantity", "{text}", {"text": f"{text}{closest(ground, GROUND_PRESETS)}"})
         ground = GROUND_PRESETS[ground.lower()]
     return tables | {"ground": ground, "bed": {**PLACEHOLDER, **bed}}

@@ -70,6 +70,9 @@ class PowerLaw(Section):
         return self.exponent if self.exponent is not None else 1.0 + (self.cumulative_exponent or 0.0)
 
 
+SIZES = (Constant, Between, Bell, PowerLaw)
+
+
 class BoulderSection(Section):
     """Boulders among the grains, of the same material. They lie on a broad face, and grains are poured on and around
     them. Parts that would reach below the floor are cut off."""
@@ -114,7 +117,7 @@ class BedSection(Section):
     study."""
     cloud_point_count: Annotated[int, Whole("", at_least=4, at_most=100)] = 14
     """Points in the random cloud whose hull is a grain."""
-    pour_gravity: Annotated[float, Number("m/s2", above=0)] = 9.81
+    pour_gravity: Annotated[float, Number("m/s2", above=0, at_most=1000)] = 9.81
     """Acceleration under which the grains fall. It is then lowered slowly to that under which they settle."""
     boulders: BoulderSection | None = None
     """Boulders among the grains."""

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 # Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
 # (docs/decisions/touchdown.md).
 HELD_SPEED = 0.03
+# The resolution of a larger time is worse than 0.1 ms [s].
+LATEST = 1e12
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
 Place = Annotated[Scalar, MaybeUncertain("m")]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
@@ -111,7 +113,7 @@ class ContactSection(Section):
 class LandingSection(Section):
     """When the simulation of a touchdown stops."""
 
-    time_limit: Annotated[float, Number("s", above=0)] | None = None
+    time_limit: Annotated[float, Number("s", above=0, at_most=LATEST)] | None = None
     """Longest simulated time of one touchdown. Absent: what is left of journey.duration; with journey.hop_height = 0,
     60 s."""
 
@@ -218,7 +220,7 @@ class SiteSection(Section):
 class FlightSection(Section):
     """The flight from the bounce to the next impact."""
 
-    duration: Annotated[float, Number("s", above=0)] = 43_200.0
+    duration: Annotated[float, Number("s", above=0, at_most=LATEST)] = 43_200.0
     """Longest flight."""
     flight_count: Annotated[int, Whole("", at_least=1)] | None = Field(default=None, examples=["1000"])
     """Number of samples whose flights are computed, the first ones that leave the surface. Absent: all."""

@@ -15,7 +15,6 @@ from pydantic import BaseModel, ConfigDict
 from pydantic_core import PydanticCustomError, core_schema
 
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
-from lithobrake.vocabulary.given_numbers import LARGEST
 from lithobrake.vocabulary.plain_text import closest, show
 
 if TYPE_CHECKING:
@@ -37,6 +36,8 @@ ALWAYS_SAMPLED = ("uniform", "log_uniform")
 # A normal law is unbounded, and an error of delivery is not: plausibility checks take the quantiles of one in a
 # thousand on either side as its ends (docs/decisions/smallbody.md).
 RARE = 1e-3
+# Products of six numbers of a study, as in the inertia of a sphere, neither overflow nor vanish within these sizes.
+LARGEST, LEAST = 1e50, 1e-50
 _POSITIVE_PARAMETERS = ("std", "alpha", "beta", "shape", "scale", "rate")
 
 
@@ -104,6 +105,14 @@ def refuse(value: object, allowed: object, remedy: str) -> PydanticCustomError:
     return PydanticCustomError("quantity", "{text}", {"text": f"is {show(value)}; allowed: {allowed}; {remedy}"})
 
 
+def _refuse_size(value: object, allowed: object, *numbers: float) -> None:
+    """Refuse a value with a number that arithmetic cannot carry; allowed: what the value may be."""
+    if any(abs(one) > LARGEST or 0.0 < abs(one) < LEAST for one in numbers):
+        raise refuse(
+            value, f"{allowed}, and 0 or from {LEAST:g} to {LARGEST:g} in size", "write a number of such a size"
+        )
+
+
 @dataclass(frozen=True)
 class Number:
     """A number in its unit ("" for a pure number) and range, or one given word in its place.
@@ -148,10 +157,9 @@ class Number:
         if not is_number(value):
             unit = f", in {self.unit}" if self.unit else ""
             raise refuse(value, self, f"write a finite number without quotes{unit}")
-        if abs(value) > LARGEST and self.allow(value, value):
-            raise refuse(value, self, f"write a number below {LARGEST:g} in size, whose square is a number")
         if not self.allow(value, value):
             raise refuse(value, self, "write a number in this range")
+        _refuse_size(value, self, value)
         return float(value)
 
 
@@ -175,6 +183,7 @@ class Numbers(Number):
             raise refuse(value, f"{self.count} numbers, each {self}", f"write {self.count} numbers in square brackets")
         if not all(self.allow(entry, entry) for entry in value):
             raise refuse(value, f"{self.count} numbers, each {self}", "write numbers in this range")
+        _refuse_size(value, f"{self.count} numbers, each {self}", *value)
         if self.ascending and any(later <= earlier for earlier, later in pairwise(value)):
             raise refuse(value, f"{self.count} numbers, ascending", "write the smaller one first")
         return tuple(float(entry) for entry in value)
@@ -191,6 +200,7 @@ class Tensor(Number):
             raise refuse(value, self, "write 3 or 6 numbers in square brackets")
         if min(value[:3]) <= 0.0:
             raise refuse(value, self, "write moments above 0")
+        _refuse_size(value, self, *value)
         return tuple(float(entry) for entry in value)
 
 
@@ -222,8 +232,7 @@ class MaybeUncertain(Number):
         if not self.allow(lower, upper, ends=math.isfinite(upper)):
             allowed = f"{self}, and it reaches from {lower:g} to {upper:g}"
             raise refuse(table, allowed, "bound it within the range (uniform, log_uniform, beta, truncated_normal)")
-        if any(LARGEST < abs(end) < math.inf for end in (lower, upper)):
-            raise refuse(table, self, f"write limits below {LARGEST:g} in size, whose squares are numbers")
+        _refuse_size(table, self, *uncertain.parameters.values())
         # The support can lie in the range and the samples can still leave it: a gamma law of a tiny shape underflows to
         # 0.
         if kind not in ALWAYS_SAMPLED:

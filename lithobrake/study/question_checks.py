@@ -91,7 +91,7 @@ def _limit_problems(study: Study) -> Iterator[str]:
         if limit is None or limit.name not in names:
             yield (
                 f'aim.within has "{text}"; allowed: one of {", ".join(names)}, compared by <, <=, > or >= with a '
-                'number, as in "incidence_deg < 45"; write it so'
+                'finite number, as in "incidence_deg < 45"; write it so'
             )
 
 

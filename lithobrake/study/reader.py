@@ -4,7 +4,7 @@ import contextlib
 import shlex
 import shutil
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_args
@@ -14,11 +14,12 @@ from pydantic import BaseModel, ValidationError
 from lithobrake.files.reading import open_regular
 from lithobrake.study.checks import problems
 from lithobrake.study.ground_beds import laid_out
+from lithobrake.study.ground_sections import SIZES
 from lithobrake.study.refusals import sentences
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
-from lithobrake.vocabulary.plain_text import closest
+from lithobrake.vocabulary.plain_text import closest, visible
 
 STUDIES, EXAMPLES = "scenarios", "examples"
 # What an example needs beside itself, in the same folder.
@@ -30,6 +31,10 @@ BESIDE = {
     "notebook_reading_a_study": ("notebook_first_study.py", "ball_on_plate.py"),
     "philae": ("philae_bounce.csv",),
 }
+
+
+# The tables that are one of several distributions of sizes.
+SIZED = ("bed.diameter", "bed.boulders.diameter")
 
 
 @dataclass(frozen=True)
@@ -115,8 +120,9 @@ class StudyError(ValueError):
     """A study file that is refused; `problems` has one sentence for each thing wrong."""
 
     def __init__(self, problems: list[str]) -> None:
-        super().__init__("\n".join(problems))
-        self.problems = problems
+        # A name of the user's own may hold anything, line breaks among it.
+        self.problems = [visible(problem) for problem in problems]
+        super().__init__("\n".join(self.problems))
 
 
 def read_study(path: Path) -> Study:
@@ -181,7 +187,8 @@ def check_tables(tables: Mapping[str, Any], folder: Path, name: str = STUDY_FILE
         # where the schema has nothing to refuse.
         study = Study.model_validate(_absolute(tables, folder)).with_function(function).of_file(name)
     except ValidationError as error:
-        raise StudyError([f"{name}: {text}" for text in sentences(error.errors(), known_keys())]) from error
+        found = [f"{name}: {text}" for text in sentences(_once(error.errors()), known_keys() | _keys_of_sizes())]
+        raise StudyError(found) from error
     study, found = laid_out(study, _bed_of(tables))
     if found := [study.said(text) for text in found or problems(study)]:
         raise StudyError(found)
@@ -191,6 +198,23 @@ def check_tables(tables: Mapping[str, Any], folder: Path, name: str = STUDY_FILE
 def _bed_of(tables: Mapping[str, Any]) -> Mapping[str, Any]:
     bed = tables.get("bed")
     return bed if isinstance(bed, Mapping) else {}
+
+
+def _keys_of_sizes() -> dict[str, tuple[str, ...]]:
+    """The keys of each distribution of sizes, by the dotted name of the table and the distribution."""
+    kinds = {get_args(kind.model_fields["distribution"].annotation)[0]: (*kind.model_fields,) for kind in SIZES}
+    return {f"{path}.{name}": keys for path in SIZED for name, keys in kinds.items()}
+
+
+def _once(errors: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The errors of the schema without those of a key of [delivery] in the table that it stands for."""
+    told = [(error["loc"], error.get("input")) for error in errors]
+    return [
+        error
+        for error in errors
+        if error["loc"][:1] not in (("impact",), ("site",))
+        or (("delivery", *error["loc"][1:]), error.get("input")) not in told
+    ]
 
 
 def known_keys() -> dict[str, tuple[str, ...]]:

@@ -44,15 +44,18 @@ def sentences(errors: Sequence[Mapping[str, Any]], known_keys: Mapping[str, tupl
 def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]]) -> str:
     # The schema puts the kind of a size distribution into the path; the file has no such level.
     place = [str(part) for part in error["loc"]]
-    if place[:2] == ["bed", "diameter"]:
-        place = place[:2] + place[3:]
+    sizes = (
+        place.pop(place.index("diameter") + 1)
+        if place[:1] in (["bed"], ["ground"]) and "diameter" in place[:-1]
+        else ""
+    )
     key, table = ".".join(place), ".".join(place[:-1])
     kind, found, context = error["type"], error.get("input"), error.get("ctx", {})
     # A table with a name of the user's own has the keys of all such, and so have the tables in it.
     named = (".".join(place[:-2]), ".".join([*place[:1], *place[2:-1]])) if len(place) > 2 else ()
-    known = next((known_keys[one] for one in (table, *named) if one in known_keys), ())
+    known = next((known_keys[one] for one in (f"{table}.{sizes}", table, *named) if one in known_keys), ())
     if kind == "quantity":
-        return f"{key} {error['msg']}"
+        return f"{key} {error['msg']}".lstrip()
     if kind == "extra_forbidden" and key in REPLACED:
         return f"{key} is a key of an older version; {REPLACED[key]}"
     if kind == "extra_forbidden":

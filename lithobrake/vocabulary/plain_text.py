@@ -77,7 +77,7 @@ def _text(value: object, levels: int = 4) -> str:
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_text(entry, levels - 1) for entry in value) + "]"
     if isinstance(value, str):
-        return f'"{"".join(map(_visible, value))}"'
+        return f'"{visible(value)}"'
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, int) and abs(value) >= 1e21:
@@ -86,9 +86,9 @@ def _text(value: object, levels: int = 4) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _visible(character: str) -> str:
-    """A character as it is, or by its escape sequence where it is a line break or shows nothing."""
-    return character if character.isprintable() else character.encode("unicode_escape").decode("ascii")
+def visible(text: str) -> str:
+    """A text in which a line break, and what shows nothing, stands by its escape sequence."""
+    return "".join(one if one.isprintable() else one.encode("unicode_escape").decode("ascii") for one in text)
 
 
 def in_lines(text: str, indent: str = "") -> str:

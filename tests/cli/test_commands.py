@@ -158,7 +158,7 @@ MESH = ["--shape", "apophis.obj"]
     ([*MESH, "--body", "bennu", "--mass", "4e10"], "--body and --shape and --mass are given; allowed: --shape with"),
     (["--mass", "4e10", "--spin", "1e5"], "--mass and --spin are given; allowed: --shape"),
     ([*MESH, "--mass", "-1", "--spin", "1e5"], "--mass is -1; allowed: a finite number above 0 [kg]"),
-    ([*MESH, "--mass", "4e10", "--spin", "nan"], "--spin is nan; allowed: a finite number above 0 [s]"),
+    ([*MESH, "--mass", "4e10", "--spin", "nan"], "--spin is nan; allowed: a finite number; write one"),
     (["--body", "bennu", "--shape", "m/ryugu_v3.obj"], "which names Ryugu, and --body is Bennu"),
 ])  # fmt: skip
 def test_no_study_has_the_mass_of_another_body(arguments: list[str], words: str, home: Path) -> None:
@@ -386,7 +386,7 @@ def test_without_a_current_folder_the_sentence_says_so(folder: Path) -> None:
     assert ended.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize("seconds", ["nan", "0", "inf"])
+@pytest.mark.parametrize("seconds", ["0", "-1"])
 def test_a_film_without_a_length_is_refused_before_the_landing(
     seconds: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

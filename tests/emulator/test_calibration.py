@@ -187,3 +187,12 @@ def test_an_outcome_alone_has_its_chance_and_what_lies_beyond_a_bound_none(model
 def test_names_and_values_that_cannot_be_are_refused(model: Emulator, arguments: dict, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         model.log_density(x=SOIL, **arguments)
+
+
+def test_outputs_of_which_one_follows_from_the_other_are_told_so() -> None:
+    x = sobol_sequence(INPUTS, 40, seed=2)
+    first = x[:, 0] + np.random.default_rng(1).standard_normal(40)
+    twice = emulator.fit(INPUTS, x, np.column_stack([first, 2.0 * first]), output_names=["one", "double"])
+    with pytest.raises(ValueError, match="one, double have no density together"):
+        twice.log_density({"one": 0.5, "double": 1.0}, SOIL)
+    assert np.isfinite(twice.log_density({"one": 0.5}, SOIL)).all()

@@ -168,6 +168,14 @@ def test_without_effects_hardly_any_study_finds_one() -> None:
     assert sum(found) <= 5
 
 
+@pytest.mark.parametrize("run_count", [3, 4, 5])
+def test_runs_that_are_no_more_than_terms_tell_of_no_input(run_count: int, recwarn: pytest.WarningsRecorder) -> None:
+    x = sobol_sequence(MEAN_LAW_INPUTS, run_count, seed=1)
+    found = found_inputs(MEAN_LAW_INPUTS, x, x[:, :1] + 0.1 * x[:, 1:2], 0.9, seed=0)
+    assert [str(one.message) for one in recwarn] == []
+    assert found.any() == (run_count == 5)
+
+
 def test_a_level_must_be_a_probability() -> None:
     with pytest.raises(ValueError, match=r"level is 90"):
         fitted(1.0, 1.0, 60, 0).found_inputs(level=90)
