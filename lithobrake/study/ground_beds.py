@@ -1,10 +1,10 @@
 """The ground of each bed of a study whose ground is unknown: its kind, its grains, and the bed that these ask for."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping
+from itertools import accumulate
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from lithobrake.files.reading import hashed_seed
 from lithobrake.study import lander_checks
@@ -57,8 +57,8 @@ def _drawn(study: Study, kind: float, size: float, ratio: float) -> BedGround:
     """The ground that three numbers between 0 and 1 draw."""
     assert study.ground is not None
     names = list(study.ground.kind)
-    below = np.cumsum([study.ground.kind[name].weight for name in names])
-    number = min(int(np.searchsorted(below, kind, side="right")), len(names) - 1)
+    below = list(accumulate(study.ground.kind[name].weight for name in names))
+    number = min(bisect_right(below, kind), len(names) - 1)
     one = study.ground.kind[names[number]]
     drawn = max(_at(grain_size(study, one), size), finest(study))
     return BedGround(names[number], number, drawn, _at(one.size_ratio, ratio))
@@ -79,6 +79,8 @@ def finest(study: Study) -> float:
 def finer_share(study: Study) -> float:
     """The share of the ground whose grains are finer than any that are simulated."""
     assert study.ground is not None
+    import numpy as np
+
     least, found = finest(study), 0.0
     for kind in study.ground.kind.values():
         size = grain_size(study, kind)

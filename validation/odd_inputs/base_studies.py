@@ -31,42 +31,50 @@ ORBIT = {
 }  # fmt: skip
 # Further studies: what each adds to a shipped one.
 ADDED: dict[str, tuple[str, Tables]] = {
-    "soils": ("quick", {"soil": {
+    "soils": ("one_ground", {"soil": {
         "ponds": {"latitude_deg": [-40.0, 40.0], "longitude_deg": [-120.0, 0.0], "slope_deg": [0.0, 60.0],
                   "grain": {"friction": 0.3, "restitution": 0.4, "young_modulus": 3e5}},
         "listed": {"facets": "facets.txt", "grain": {"friction": 0.8}}}}),
-    "parts": ("quick", {
+    "parts": ("one_ground", {
         "lander": {"centre_of_mass": {"x": 0.01, "y": 0.0, "z": 0.0}, "inertia": [0.01, 0.01, 0.004],
                    "part": {"leg": BOX | {"orientation": [1.0, 0.0, 0.0, 0.0], "mass": 0.05, "friction": 0.4},
                             "foot": {"shape": "sphere", "diameter": 0.03, "centre": [0.2, 0.0, 0.0], "density": 900.0,
                                      "restitution": 0.2}}},
         "bed": {"width": [1.2, 1.2], "grain_count": 500}}),
-    "hull": ("quick", {"lander": {"shape": "hull", "file": "lander.stl", "unit": "m", "edges": None}}),
-    "sky": ("quick", {"sky": {"sun_latitude_deg": {"distribution": "uniform", "lower": -20.0, "upper": 20.0},
+    "hull": ("one_ground", {"lander": {"shape": "hull", "file": "lander.stl", "unit": "m", "edges": None}}),
+    "sky": ("one_ground", {"sky": {"sun_latitude_deg": {"distribution": "uniform", "lower": -20.0, "upper": 20.0},
                               "earth_latitude_deg": 5.0, "mask_deg": 10.0, "beam_deg": 60.0,
                               "orbiter": {"altitude": 2000.0, "inclination_deg": 90.0}}}),
-    "dated": ("quick", {"site": POLE, "sky": {"date": "2027-04-20T00:00:00", "until": "2027-06-20T00:00:00",
+    "dated": ("one_ground", {"site": POLE, "sky": {"date": "2027-04-20T00:00:00", "until": "2027-06-20T00:00:00",
                                               "orbit": ORBIT, "orbiter": {"states": "orbiter.csv"}}}),
-    "tumbling": ("quick", {"site": {"rotation": {"yaw_deg": 10.0, "pitch_deg": 1.0, "roll_deg": 1.0,
+    "tumbling": ("one_ground", {"site": {"rotation": {"yaw_deg": 10.0, "pitch_deg": 1.0, "roll_deg": 1.0,
                                                  "spin": [0.0, 0.0, 1e-5], "days": 1.0}}}),
-    "mesh": ("quick", {"site": {
+    "mesh": ("one_ground", {"site": {
         "body": "body.obj", "name": "Rock", "unit": "m", "gravity_facets": 100, "density": 2000.0,
         "spin_period": 40_000.0, "roughness_deg": 5.0,
         "partner_body": {"name": "Other", "mass": 1e11, "diameter": 300.0, "distance": 2000.0}}}),
-    "kernels": ("quick", {"site": {"body": "didymos", "kernels": ["body.tpc"]}}),
+    "kernels": ("one_ground", {"site": {"body": "didymos", "kernels": ["body.tpc"]}}),
     "states": ("release", {"delivery": {"release": None, "states": "states.csv", "spin_x": None},
                            "journey": {"count": 8}}),
     "message": ("release", {"delivery": {"release": None, "states": "states.oem"}, "journey": {"count": 8}}),
     "covariance": ("release", {"site": POLE, "delivery": {"frame": "icrf", "epoch": "2027-04-20T12:00:00", "release": {
         "time": 0.0, "position_std": None, "velocity_std": None,
         "covariance": [[(900.0 if row < 3 else 4e-5) * (row == column) for column in range(6)] for row in range(6)]}}}),
-    "correlated": ("quick", {"delivery": {"correlations": [["north_error", "east_error", 0.5]],
+    "correlated": ("one_ground", {"delivery": {"correlations": [["north_error", "east_error", 0.5]],
                                           "orientation": [1.0, 0.0, 0.0, 0.0], "pointing_error_deg": 10.0}}),
-    "sized": ("quick", {"bed": {
+    "sized": ("one_ground", {"bed": {
         "diameter": {"distribution": "power_law", "value": None, "cumulative_exponent": 2.6, "lower": 0.08,
                      "upper": 0.11},
         "boulders": {"diameter": {"distribution": "constant", "value": 0.2}, "coverage": 0.1, "cover": [-0.1, 0.0]},
         "width": [1.2, 1.2], "grain_count": 600}}),
+    "grounds": ("one_ground", {
+        "bed": {"grain_count": None, "width": None, "diameter": None},
+        "soil": {"ponds": {"slope_deg": [0.0, 5.0], "ground": "rock"}},
+        "ground": {"unknown": "patchy", "patch": 20.0, "finest": 0.08, "kind": {
+            "gravel": {"weight": 0.75, "grain_size": {"distribution": "log_uniform", "lower": 0.05, "upper": 0.3},
+                       "size_ratio": 1.5, "grain": {"friction": 0.5},
+                       "boulders": {"diameter": {"distribution": "constant", "value": 0.5}, "coverage": 0.05}},
+            "rock": {"weight": 0.25, "rock": True}}}}),
     "asked": ("first_bounce", {
         "limit_states": {"fast": "speed_out > 0.1 and not returns"},
         "design": {"half_width": 0.3, "half_width_of": "fast", "largest_run_count": 8, "side_runs": True,

@@ -21,7 +21,7 @@ from lithobrake.report.figures.style import STYLE
 FIRST, JOURNEYS = "first", "journeys"
 CHANGES: dict[str, tuple[str, dict[str, Any]]] = {
     FIRST: ("first_bounce", {"limit_states": {"fast": "speed_out > 0.1"}, "monte_carlo": {"sample_count": 100}}),
-    JOURNEYS: ("quick", {"journey": {"emulated_count": 4}}),
+    JOURNEYS: ("one_ground", {"journey": {"emulated_count": 4}}),
 }
 
 

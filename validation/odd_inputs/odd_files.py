@@ -18,7 +18,7 @@ from lithobrake.pipeline import plan_lines, plan_study
 # The studies of base_studies that read each file.
 READ = {
     "states.csv": "states", "states.oem": "message", "body.obj": "mesh", "lander.stl": "hull", "facets.txt": "soils",
-    "body.tpc": "kernels", "orbiter.csv": "dated", "program.py": "programmed", "study.toml": "quick",
+    "body.tpc": "kernels", "orbiter.csv": "dated", "program.py": "programmed", "study.toml": "one_ground",
 }  # fmt: skip
 # Of these what is left of a file that was cut within its last lines is whole again, and says nothing of it.
 OPEN_ENDED = ("states.csv", "states.oem", "facets.txt", "orbiter.csv", "program.py", "study.toml", "body.tpc")
