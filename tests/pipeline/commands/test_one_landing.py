@@ -189,8 +189,8 @@ def test_each_touchdown_has_a_line_and_the_end_a_sentence(followed: tuple[OneJou
     assert [int(line[0]) for line in lines] == list(range(len(found.landings)))
     for line, made in zip(lines, found.landings, strict=True):
         assert float(line[2]) == pytest.approx(made.values["impact.speed"], rel=5e-3)
-    # A lander that came down again has its way over the ground, as on a ball: on the bed, and in a flight that is highest
-    # in between, so that it is nowhere faster than at the faster of its ends.
+    # A lander that came down again has its way over the ground, as on a ball: on the bed, and in a flight that is
+    # highest in between, so that it is nowhere faster than at the faster of its ends.
     shape = found.journeys.landers.body.shape
     rows = zip(pairwise(lines), pairwise(touchdowns(found)), found.landings[:-1], strict=True)
     for (line, after), (one, another), made in rows:
