@@ -54,9 +54,10 @@ def beds_of(study: Study, folder: Path) -> list[Bed]:
 
 
 def draws(study: Study, count: int) -> Iterator[tuple[int, Lander, Landing]]:
-    inputs = DrawnDesign(study).inputs
-    for number, row in enumerate(sobol_sequence(inputs, count, seed=3).tolist()):
-        values = draw(study, study.touchdown_medians() | dict(zip(inputs, row, strict=True)), 1000 + number)
+    design = DrawnDesign(study)
+    for number, row in enumerate(sobol_sequence(design.inputs, count, seed=3).tolist()):
+        inputs = study.touchdown_medians() | dict(zip(design.inputs, row, strict=True))
+        values = draw(study, inputs, 1000 + number, design.region)
         yield round(values["bed"]), lander(study, values), landing(study, values)
 
 

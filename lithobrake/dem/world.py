@@ -222,7 +222,7 @@ class World(Observables):
         """Advance by a duration [s], every contact at steps of its own, so many in the time of its collision.
 
         What is slow or far from anything then costs little; a landing is 4 to 5 times as fast (docs/performance.md).
-        Energy of a landing is kept to three thousandths of the impact's with 25 steps, to one with 100. The time step
+        Energy of a landing is kept to four thousandths of the impact's with 25 steps, to one with 100. The time step
         plays no part. Collisions slower than resolved_speed [m/s] take fewer steps, in proportion, but never less than
         5; at 0.3 of the lander's, energy is kept to some hundredths. What is carried by what it touches, is beyond a
         reach [m] of the watched body and slower than half of held_speed [m/s] stands still until a blow would make it

@@ -1,6 +1,7 @@
 """Contacts at steps of their own, and slow ones: the same laws, and momentum kept to the last bits."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -98,6 +99,25 @@ def test_a_heavy_plate_on_a_light_grain_makes_no_energy(radius: float) -> None:
     for _ in range(20):
         world.run_locally(0.01, 25.0)
         assert world.energy()["total"] - before == pytest.approx(0.0, abs=3e-3 * impact)
+
+
+def test_the_ledger_of_a_box_on_a_layer_of_grains_closes_to_the_second_order_of_the_steps() -> None:
+    soil = Material(young_modulus=2e6, poisson_ratio=0.25, density=2500.0, restitution=0.5, friction=0.5)
+    lacking = []
+    for steps in (25.0, 100.0):
+        world = World(gravity=(0.0, 0.0, -5e-5))
+        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), soil)
+        for x, y in np.ndindex(5, 5):
+            world.add_body(Sphere(0.05), soil, (0.101 * (x - 2), 0.101 * (y - 2), 0.05))
+        # 12 kg, on nine grains askew.
+        box = replace(soil, density=12.0 / 0.3**3)
+        number = world.add_body(Box((0.3, 0.3, 0.3)), box, (0.003, 0.002, 0.2501), (0.01, 0.0, -0.05))
+        before, impact = world.energy()["total"], float(world.kinetic_energy[number])
+        world.run_locally(0.3, steps)
+        assert world.velocity[number, 2] > 0.02
+        lacking.append(abs(world.energy()["total"] - before) / impact)
+    assert lacking[0] < 0.01
+    assert lacking[1] < 0.001
 
 
 @pytest.mark.parametrize(("restitution", "friction"), [(1.0, 0.0), (0.6, 0.0), (0.6, 0.5)])
