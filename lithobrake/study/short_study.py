@@ -3,19 +3,21 @@
 import json
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from lithobrake.study.ground_presets import GROUND_PRESETS
 from lithobrake.study.refusals import by_name
 from lithobrake.study.template import DISTRIBUTION_WORDS, commented, sections
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.known_bodies import KNOWN_BODIES, KnownBody, body_named_in
 
 _CDS = "largest mass and envelope in [CDS-2022], without deployable parts"
-GRAIN_SIZE = 0.4  # diameter of the grains over the longest edge of the lander
-# Width of the ground before it repeats, over the diagonal of the lander; and what stays free beside that, in grains.
-WIDTH, FREE = 2.15, 3.4
-GRAINS = 2.5  # over the square of width over diameter: some three deep
+PRESET_WORDS = "These are those of {} (docs/howto/ground.md)."
+ANY_WORDS = "Nothing is said of this body here: replace them by what is known (docs/howto/ground.md)."
+ANY_GROUND = "ryugu"
 # Of the escape speed of a ball of the body's mass and size: what a lander comes in with. Nothing lands faster than
 # FASTEST [m/s].
 SPEEDS, FASTEST = (0.5, 0.9), 0.5
@@ -32,13 +34,16 @@ _STUDY = """\
 title = "{lander.name} on {body.name}"
 seed = 1
 
-# The ground: boxes of settled grains that repeat in both directions, one for every four journeys, at least twelve.
+# Boxes of settled grains that repeat in both directions, one for every four journeys, at least twelve.
 [bed]
-grain_count = {grains}
-width = [{width}, {width}]    # m; `lithobrake plan` prints the smallest
-diameter = {{ distribution = "constant", value = {diameter} }}    # m, of the sphere of equal volume
 pour_gravity = 0.5    # m/s2; grains then settle under the local gravity
 
+# The ground, which nobody knows: each bed draws a kind by its weight and a size of grains, from which its width and
+# number of grains follow. {ground_words}
+[ground]
+unknown = "everywhere"    # or "patchy"
+
+{kinds}
 [grain]
 density = {density}    # kg/m3
 young_modulus = {{ distribution = "log_uniform", lower = {softest}, upper = {stiffest} }}    # Pa
@@ -136,20 +141,30 @@ def short_study(body: KnownBody, lander: KnownLander, place: tuple[float, float]
     place: latitude and longitude of the aim point [deg]. shape: path of a mesh from the study file, instead of a shape
     that the package has. Raises ValueError where there is neither.
     """
-    diameter = float(f"{GRAIN_SIZE * max(lander.edges):.2g}")
-    diagonal = math.hypot(*lander.edges)
-    # Rounded up to a centimetre: rounded down it might fall below the least width.
-    width = math.ceil(100.0 * max(WIDTH * diagonal, diagonal + FREE * diameter)) / 100.0
     speeds = [min(part * escape_speed(body), FASTEST * part / SPEEDS[1]) for part in SPEEDS]
+    has_preset = body.key in GROUND_PRESETS
     softest = max(SOFTEST, STIFFNESS * DENSITY * speeds[1] ** 2)
     text = _STUDY.format(
-        body=body, lander=lander, grains=round(GRAINS * (width / diameter) ** 2), width=width, diameter=diameter,
+        body=body, lander=lander, kinds=_kinds(GROUND_PRESETS[body.key if has_preset else ANY_GROUND]),
+        ground_words=PRESET_WORDS.format(body.name) if has_preset else ANY_WORDS,
         density=DENSITY, softest=rounded_up(softest), stiffest=rounded_up(10.0 * softest),
         edges=list(lander.edges), latitude=place[0], longitude=place[1], slow=float(f"{speeds[0]:.2g}"),
         fast=float(f"{speeds[1]:.2g}"),
         speed_words=SLOW_WORDS if speeds[1] < FASTEST else FAST_WORDS,
     )  # fmt: skip
     return text + _site(body, shape)
+
+
+def _kinds(ground: Mapping[str, Any]) -> str:
+    """The tables of kinds of ground."""
+    text = ""
+    for name, kind in ground["kind"].items():
+        text += f"[ground.kind.{name}]\nweight = {kind['weight']:g}\n"
+        if size := kind.get("grain_size"):
+            ends = f"lower = {size['lower']:g}, upper = {size['upper']:g}"
+            text += f'grain_size = {{ distribution = "{size["distribution"]}", {ends} }}    # m\n'
+        text += "rock = true    # blocks far larger than the lander\n\n" if kind.get("rock") else "\n"
+    return text.rstrip("\n") + "\n"
 
 
 def aim_point(text: str) -> tuple[float, float]:
