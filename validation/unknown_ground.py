@@ -2,8 +2,8 @@
 
     python validation/unknown_ground.py FOLDER
 
-FOLDER: of the finished study, made by `lithobrake run scenarios/quick.toml --out FOLDER`. Writes unknown_ground.json and
-the two figures of the README, docs/unknown_ground.png and docs/unknown_ground_map.png.
+FOLDER: of the finished study, made by `lithobrake run scenarios/quick.toml --out FOLDER`. Writes unknown_ground.json
+and the two figures of the README, docs/unknown_ground.png and docs/unknown_ground_map.png.
 """
 
 import sys
