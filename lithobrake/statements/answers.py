@@ -1,6 +1,6 @@
 """The answer of a study in sentences, as summary.json and the page have it, and the numbers beside it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from lithobrake.statements import labels, touchdowns
@@ -215,10 +215,16 @@ def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
     if not rest.time_s.median.is_known:
         return [_end(name, one, count) for name, one in others.items()]
     size, unit = time_unit(rest)
+    time, distance, over = rest.time_s, rest.distance_m, data.results.over_grounds
+    where = ""
+    if over is not None and over.time_s.lower is not None:
+        # The interval of one ground, as in the answer.
+        time, distance = replace(time, median=over.time_s), replace(distance, median=over.distance_m)
+        where = ", on one ground"
     likeliest = max(others, key=lambda name: (others[name].share.value, others[name].share.upper or 0.0))
     return [
-        _quantile(rest.time_s, unit, "median time to rest", size),
-        _quantile(rest.distance_m, "m", "median distance from the aim point"),
+        _quantile(time, unit, f"median time to rest{where}", size),
+        _quantile(distance, "m", f"median distance from the aim point{where}"),
         _region(rest.regions[-1]) if rest.regions else _quantile(rest.contacts, "contacts", "median"),
         _end(likeliest, others[likeliest], count),
     ]
