@@ -25,7 +25,7 @@ JOURNEYS, TOUCHDOWNS, TOUCHDOWN_RUNS = file_names.JOURNEYS_FILE, file_names.TOUC
 NEEDED = tuple(name for name in JOURNEY if not name.startswith("attitude_"))
 # Columns of the runs that the table of touchdowns has already.
 _TWICE = ("input:journey", "input:touchdown", "key", "outcome")
-SUMMARY_FORMAT = 4
+SUMMARY_FORMAT = 5
 # Columns that hold no numbers.
 _WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
 # Files of what samples of an emulator or an expansion came to, which a study without samples has none of.

@@ -10,6 +10,7 @@ from lithobrake.study.ground_sections import BoulderSection, Constant, SoilSecti
 from lithobrake.study.lander_checks import NAME
 from lithobrake.study.quantity import Scalar, median, usual_reach
 from lithobrake.study.study import Study
+from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.plain_text import closest, show
 from lithobrake.vocabulary.quantities import ELSEWHERE
 
@@ -230,7 +231,7 @@ def cover_problems(study: Study) -> Iterator[str]:
     if area < LEAST_COVER * here:
         yield (
             f"bed.width is {study.bed.width[0]:g} x {study.bed.width[1]:g} m, of which {study.bed.grain_count} grains "
-            f"cover {100.0 * area / here:.2g} %; allowed: at most {area / LEAST_COVER:.3g} m2, a hundredth of which "
+            f"cover {percent(area / here, 2)}; allowed: at most {area / LEAST_COVER:.3g} m2, a hundredth of which "
             "they cover; narrow the bed, or raise bed.grain_count"
         )
 

@@ -14,11 +14,11 @@ import pytest
 from lithobrake.files.atomic import locked
 from lithobrake.pipeline.folder_state import read_state
 from lithobrake.results import StudyResults, open_study
-from lithobrake.results.study_files import intact_file
+from lithobrake.results.study_files import SUMMARY_FORMAT, intact_file
 
 BODY = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
 SUMMARY = {
-    "format_version": 4, "study": {},
+    "format_version": SUMMARY_FORMAT, "study": {},
     "results": {"headline": ["75 % return"], "answer": ["75 % return"], "beds": [{"mass": 1.0}]}, "provenance": {},
 }  # fmt: skip
 FLIGHTS = "sample,status,latitude_deg,longitude_deg,facet\n0,impact,1.0,2.0,3\n"

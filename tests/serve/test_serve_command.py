@@ -45,7 +45,7 @@ def test_an_address_that_is_not_to_be_had_is_told(tmp_path: Path) -> None:
     (["--host", " \t"], "host is ' \\t' (an unset variable?)"),
     (["--host", "a" * 70], "is no address of this machine"),
     (["--time-limit", "0"], "the time limit is 0 s; allowed: above 0"),
-    (["--time-limit", "nan"], "the time limit is nan s; allowed: above 0"),
+    (["--time-limit", "nan"], "--time-limit is nan; allowed: a finite number"),
 ])  # fmt: skip
 def test_what_cannot_be_served_is_one_sentence(options: list[str], said: str, tmp_path: Path) -> None:
     found = CliRunner().invoke(app, ["serve", str(BALL), "--out", str(tmp_path / "out"), "--port", "0", *options])

@@ -135,7 +135,7 @@ def test_an_ephemeris_of_a_journey_that_escapes_is_written(journeys: StudyResult
 
 
 def test_pictures_of_a_landing_are_refused_where_a_function_makes_it(journeys: StudyResults, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="a program or function of its own makes its touchdowns"):
+    with pytest.raises(ValueError, match=r"a program or function of the study.s own makes its touchdowns"):
         export_study(journeys, tmp_path, ["sheet"])
     key = journeys.touchdowns["key"][1]
     with pytest.raises(ValueError, match=f"run {key} was made by a program or function"):
