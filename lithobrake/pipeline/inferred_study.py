@@ -144,6 +144,10 @@ class InferredStudy:
         if not (folder / EMULATOR_FILE).is_file():
             raise ValueError(_without_emulator(path, source.study))
         study = with_site_gravity(source.study)
+        if study.ground is not None:
+            raise ValueError(
+                f"{path} has [ground], and bounces tell the soil of one ground; infer from a study of one ground"
+            )
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all((folder / name).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")

@@ -163,6 +163,14 @@ def _ground_problems(study: Study, given: Mapping[str, Any]) -> Iterator[str]:
         return
     if study.bed.sides == "walls":
         yield 'bed.sides is "walls"; allowed with [ground] is "periodic", as its beds have no walls; leave it out'
+    # Inputs of an expansion and of samples are drawn one by one, and kind and size of a ground belong together.
+    if study.expansion is not None:
+        yield "[expansion] stands beside [ground]; allowed: one ground, by the sizes of [bed]; leave one of the two out"
+    if study.sample_count:
+        yield (
+            f"monte_carlo.sample_count is {study.sample_count} beside [ground]; allowed: 0, as samples are of one "
+            "ground; leave it out"
+        )
     total = math.fsum(kind.weight for kind in study.ground.kind.values())
     if abs(total - 1.0) > ROUNDING:
         weights = ", ".join(f"{name} {kind.weight:g}" for name, kind in study.ground.kind.items())

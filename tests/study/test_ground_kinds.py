@@ -114,6 +114,11 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
         "ground.kind.one.grain.density is uncertain and grain.density is not",
     ),
     ({"ground": {"kind": KINDS, "unknown": "nowhere"}}, "ground.unknown is"),
+    ({"monte_carlo": {"sample_count": 100}}, "monte_carlo.sample_count is 100 beside [ground]"),
+    (
+        {"expansion": {"points": "sobol_sequence", "screening_count": 60, "refined_count": 60}},
+        "[expansion] stands beside [ground]",
+    ),
     ({"ground": {"kind": KINDS, "patch": 0.0}}, "ground.patch is 0"),
     ({"ground": {"kind": KINDS, "pach": 1.0}}, "ground.pach is not a known key; did you mean patch?"),
     ({"soil": {"pond": {"slope_deg": [0.0, 5.0], "ground": "gravle"}}}, 'ground is "gravle"; allowed: a kind of'),

@@ -30,7 +30,7 @@ from lithobrake.touchdown.touchdown_model import landing, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.quantities import GROUND, JOURNEY, TIME_LEFT, TOUCHDOWN, Row
+from lithobrake.vocabulary.quantities import GROUND, GROUND_KIND, GROUND_SIZE, JOURNEY, TIME_LEFT, TOUCHDOWN, Row
 
 if TYPE_CHECKING:
     from lithobrake.results.motions import MovingBodies
@@ -98,7 +98,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     design = DrawnDesign(study)
     Soils(design.site).refuse()
     values = _values(design, number)
-    own = (*OF_JOURNEYS, *(GROUND if study.has_local_ground else ()))
+    own = (*OF_JOURNEYS, GROUND_KIND, GROUND_SIZE, *(GROUND if study.has_local_ground else ()))
     free = {key: value for key, value in values.items() if key not in own}
     changed: dict[str, float] = {}
     for key, value in (_changed(change, free) for change in changes):
@@ -118,10 +118,21 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
             "take the soil of their region; change the study file"
         )
     _refuse(study, free | changed)
+    changed = _of_bed(design, values, changed)
     if not study.has_local_ground:
         return values | changed
     # The acceleration goes with the heading on the bed, and the tilt that soil can have with its friction.
     return on_local_ground(design.site, [values | changed], number)[0]
+
+
+def _of_bed(design: DrawnDesign, values: Row, changed: Row) -> Row:
+    """The changes with what another bed has of its own ground; what is given stays."""
+    if "bed" not in changed or design.study.ground is None:
+        return changed
+    last = design.study.bed_count - 1
+    if changed["bed"] > last:
+        raise ValueError(f"--set bed is {changed['bed']:g}; allowed with [ground]: 0 to {last}, the beds of the study")
+    return design.grounds.of(round(changed["bed"]), values) | changed
 
 
 def land_one(study: Study, values: Row, progress: Progress = silent) -> OneLanding:

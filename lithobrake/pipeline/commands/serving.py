@@ -30,13 +30,15 @@ from lithobrake.study.quantity import is_number
 from lithobrake.vocabulary.file_names import EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import closest, show
-from lithobrake.vocabulary.quantities import OUTPUTS
+from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, OUTPUTS
 
 # What a campaign that is solved by a server says of each run; the setting is that of the study which is served.
 RUN_KEYS = ("seed", "inputs", "setting")
 FLIGHT = ("status", "time_s", "latitude_deg", "longitude_deg", "impact_speed", "impact_incidence_deg")
 # Longest evaluation [s], where neither the command nor the study's campaign.wall_limit says another.
 TIME_LIMIT = 600.0
+# What a touchdown reads of its bed.
+OF_BED = ("bed", GROUND_KIND, GROUND_SIZE)
 # Whether the client is still there is looked at so often [s].
 _LOOK = 0.2
 
@@ -117,7 +119,8 @@ class ServedStudy:
         medians, drawn = self.design.medians, dict(zip(self.inputs, point, strict=True))
         values = draw(self.study, medians | drawn, seed, self.design.region) | dict(given)
         self._refuse_bed(values["bed"])
-        _refuse(self.study, {name: value for name, value in values.items() if name != "bed"})
+        _refuse(self.study, {name: value for name, value in values.items() if name not in OF_BED})
+        values |= self.design.grounds.of(int(values["bed"]), values) | dict(given)
         answer = self._touchdown({name: float(value) for name, value in values.items()}, seed)
         return landing_vector(answer["outcome"], answer["outputs"])
 
@@ -141,7 +144,7 @@ class ServedStudy:
         seed, given = _seed(config), _inputs(config)
         inputs = list(self._emulator.runs.inputs)
         values = self.design.medians | dict(zip(inputs, point, strict=True))
-        _refuse(self.study, values)
+        _refuse(self.study, {name: value for name, value in values.items() if name not in OF_BED})
         for name in values.keys() & given.keys():
             if given[name] != values[name]:
                 raise ValueError(

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import lithobrake
+from lithobrake.pipeline.commands.one_lander import landing_inputs
 from lithobrake.pipeline.design import bed_grounds
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.inferred_study import InferredStudy
 from lithobrake.results import StudyResults
 from lithobrake.study import check_tables, load_tables
 from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE
@@ -128,3 +130,24 @@ def test_regions_and_steep_ground_have_their_kinds(monkeypatch: pytest.MonkeyPat
     gravel = next(number for number, one in enumerate(plain.each) if one.kind == "gravel")
     assert plain.each[plain.bed_at(0, gravel, steep, steep)].kind == "rock"
     assert plain.bed_at(0, gravel, flat, flat) == gravel
+
+
+def test_a_landing_on_another_bed_has_the_ground_of_that_bed() -> None:
+    study = check_tables(tables(), QUICK.parent)
+    grounds = DrawnDesign(study).grounds.each
+    other = next(number for number, one in enumerate(grounds) if one.kind == "rock")
+    values = landing_inputs(study, [f"bed={other}", "grain.restitution=0.5"])
+    assert (values[GROUND_SIZE], values["grain.friction"], values["grain.restitution"]) == (
+        grounds[other].size,
+        0.6,
+        0.5,
+    )
+    with pytest.raises(ValueError, match=r"--set bed is 12; allowed with \[ground\]: 0 to 11"):
+        landing_inputs(study, ["bed=12"])
+    with pytest.raises(ValueError, match=r"which no landing of this study uses"):
+        landing_inputs(study, [f"{GROUND_SIZE}=0.3"])
+
+
+def test_what_holds_for_one_ground_alone_is_refused_over_several(found: StudyResults) -> None:
+    with pytest.raises(ValueError, match=r"has \[ground\], and bounces tell the soil of one ground"):
+        InferredStudy.open(found.folder)
