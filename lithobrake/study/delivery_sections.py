@@ -10,7 +10,7 @@ from lithobrake.study import quantity
 
 # Largest numbers of a state by their units: all orbits about a small body are well within the first, and speeds against
 # axes that turn with the body within the second. The resolution of a larger time is worse than 0.1 ms.
-LARGEST = {"m": 1e9, "m/s": 1e6, "s": 1e12, "rad/s": 1e3}
+LARGEST = {"m": 1e9, "m/s": 1e6, "s": 1e11, "rad/s": 1e3}
 FAR, FAST, LATE = (LARGEST[unit] for unit in ("m", "m/s", "s"))
 Matrix = tuple[tuple[float, ...], ...]
 SIDE = 6

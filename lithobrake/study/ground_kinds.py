@@ -51,7 +51,7 @@ class GroundSection(Section):
     """"everywhere": the body has one ground, and nobody knows which: each bed stands for a body of its own, and a
     lander stays on its bed. "patchy": the ground differs from place to place, and a lander that flies farther than
     ground.patch meets another bed."""
-    patch: Annotated[float, Number("m", above=0)] = Field(default=20.0, examples=["20.0"])
+    patch: Annotated[float, Number("m", at_least=1e-3, at_most=1e6)] = Field(default=20.0, examples=["20.0"])
     """Distance over the ground after which a lander meets another bed, if ground.unknown = "patchy"."""
     finest: Annotated[float, Number("m", above=0)] | None = None
     """Smallest mean diameter of grains that are simulated: beds of this size stand for finer ground, and the answer

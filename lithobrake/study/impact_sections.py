@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 # Grains that barely move are held still in a slow touchdown, which costs a third less and changes no statistic of it
 # (docs/decisions/touchdown.md).
 HELD_SPEED = 0.03
-# The resolution of a larger time is worse than 0.1 ms [s].
-LATEST = 1e12
+# So many together stay where the resolution of a time is 0.1 ms [s].
+LATEST = 1e11
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
 Place = Annotated[Scalar, MaybeUncertain("m")]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
