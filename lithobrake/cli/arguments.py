@@ -30,6 +30,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_enable=False,
 )
+REPLACE = "choose another name with --out, or replace it with --force"
 # More processes than any machine runs at once.
 MOST_WORKERS = 10_000
 StudyPath = Annotated[
@@ -248,7 +249,7 @@ def refuse_written(path: Path, force: bool) -> None:
     """Refuse a file that exists, and one that no folder is there for, before it is made."""
     from lithobrake.files.atomic import refuse_existing, refuse_no_folder
 
-    refuse_existing(() if force else (path,), "choose another name with --out, or replace it with --force")
+    refuse_existing(() if force else (path,), REPLACE)
     refuse_no_folder(path)
 
 

@@ -187,9 +187,7 @@ def compare(
     from lithobrake.results.study_files import json_values
 
     # The folder is made when there is something to write: a refusal leaves none behind.
-    refuse_existing(
-        () if force else comparison_files(place), "choose another name with --out, or replace it with --force"
-    )
+    refuse_existing(() if force else comparison_files(place), arguments.REPLACE)
     comparison = compare_studies(first, second)
     page, numbers = write_compared(comparison, place)
     lines = [*comparison_lines(comparison), f"Page: {page.resolve()}", f"Numbers: {numbers.resolve()}"]

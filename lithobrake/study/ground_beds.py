@@ -44,12 +44,15 @@ class BedGround(NamedTuple):
 
 def grounds(study: Study) -> list[BedGround]:
     """The ground of each bed, by its number; another number of beds changes none. Empty without [ground]."""
-    if study.ground is None:
-        return []
+    return [] if study.ground is None else _draw(study, 0, study.bed_count)
+
+
+def _draw(study: Study, first: int, count: int) -> list[BedGround]:
+    """The ground of so many beds from the number `first` on: a point of the sequence follows from its number."""
     from lithobrake.chaos import Uniform, sobol_sequence
 
     uniform = dict.fromkeys(DRAWN, Uniform(0.0, 1.0))
-    points = sobol_sequence(uniform, study.bed_count, hashed_seed(study.seed, "ground"))
+    points = sobol_sequence(uniform, count, hashed_seed(study.seed, "ground"), skip=first)
     return [_drawn(study, *point) for point in points.tolist()]
 
 
@@ -100,7 +103,7 @@ def grain_size(study: Study, kind: GroundKind) -> Scalar:
 
 def on_ground(study: Study, bed: int) -> Study:
     """The study with the bed and the grains of the ground of one of its beds; as it is without [ground]."""
-    return study if study.ground is None else of_ground(study, grounds(study)[bed])
+    return study if study.ground is None else of_ground(study, *_draw(study, bed, 1))
 
 
 def of_ground(study: Study, ground: BedGround) -> Study:

@@ -23,14 +23,13 @@ def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None
     if ground is None or ground.unknown != "everywhere" or not len(table.end):
         return None
     why, faces = why_no_interval(design.study), table.face[rests]
-    has_sides = len(faces) > 0 and bool((faces != "").all())
     return OverGrounds(
         at_rest=share_over_grounds(rests.astype(float), table.bed, why=why),
-        time_s=median_over_grounds(np.where(rests, table.numbers["time_s"], np.nan), table.bed, why=why),
-        distance_m=median_over_grounds(np.where(rests, table.numbers["distance"], np.nan), table.bed, why=why),
+        time_s=median_over_grounds(table.of_rest("time_s"), table.bed, why=why),
+        distance_m=median_over_grounds(table.of_rest("distance"), table.bed, why=why),
         faces={
             str(face): share_over_grounds((faces == face).astype(float), table.bed[rests], why=why)
-            for face in (np.unique(faces) if has_sides else ())
+            for face in (np.unique(faces) if table.has_sides else ())
         },
     )
 
@@ -50,16 +49,15 @@ def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None
     size, seed = np.array([one.size for one in design.grounds.each])[table.bed], design.study.seed
     if size.min() == size.max() or len(np.unique(table.bed)) < FEWEST_OF_CURVE:
         return None
-    time = np.where(rests, table.numbers["time_s"], np.nan)
     # Opposite sides together: of most landers they are alike.
     axis = np.char.lstrip(table.face.astype(str), "+-")
-    names = np.unique(axis[rests]) if bool((axis[rests] != "").all()) else ()
+    names = np.unique(axis[rests]) if table.has_sides else ()
     # The sizes of the curve are those of all beds, also where nobody rests on some.
     curves = {str(name): share_curve(np.where(rests, axis == name, np.nan), size, table.bed, seed) for name in names}
     return GroundCurve(
         grain_size_m=tuple(curve_sizes(size).tolist()),
         at_rest=tuple(share_curve(rests.astype(float), size, table.bed, seed)),
-        time_s=tuple(median_curve(time, size, table.bed, seed)),
+        time_s=tuple(median_curve(table.of_rest("time_s"), size, table.bed, seed)),
         axes={name: tuple(one) for name, one in curves.items()},
         beds=tuple(_bed(design.grounds.each[bed], table.taken(table.bed == bed)) for bed in np.unique(table.bed)),
     )
@@ -83,7 +81,6 @@ def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKi
         here = table.taken(np.flatnonzero(own))
         if not len(here.end):
             continue
-        time, distance = (np.where(here.rests, here.numbers[one], np.nan) for one in ("time_s", "distance"))
         faces = here.face[here.rests]
         found[name] = GroundKindResults(
             weight=kind.weight,
@@ -91,10 +88,11 @@ def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKi
             journeys=len(here.end),
             grain_size_m=(float(sizes[beds].min()), float(sizes[beds].max())),
             at_rest=end_share(here.rests, here.bed, why),
-            time_s=quantile_estimate(time, here.bed, MEDIAN, why=why),
-            distance_m=quantile_estimate(distance, here.bed, MEDIAN, why=why),
+            time_s=quantile_estimate(here.of_rest("time_s"), here.bed, MEDIAN, why=why),
+            distance_m=quantile_estimate(here.of_rest("distance"), here.bed, MEDIAN, why=why),
             faces={
-                str(face): end_share(faces == face, here.bed[here.rests], why) for face in np.unique(faces[faces != ""])
+                str(face): end_share(faces == face, here.bed[here.rests], why)
+                for face in (np.unique(faces) if here.has_sides else ())
             },
         )
     return found

@@ -69,6 +69,17 @@ class JourneyTable:
         at_rest: np.ndarray = self.end == JourneyEnd.AT_REST.value
         return at_rest
 
+    def of_rest(self, name: str) -> np.ndarray:
+        """A number of each lander at rest, NaN of the others [journey_count]."""
+        values: np.ndarray = np.where(self.rests, self.numbers[name], np.nan)
+        return values
+
+    @property
+    def has_sides(self) -> bool:
+        """Whether all at rest have a side that is down: a program may tell of some alone, which are no sample."""
+        faces = self.face[self.rests]
+        return len(faces) > 0 and bool((faces != "").all())
+
 
 def end_shares(study: Study, table: JourneyTable) -> dict[str, CountedShare]:
     """The share of each end; they add up to 1."""
@@ -81,7 +92,7 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
     why, rests = why_no_interval(study), table.rests
 
     def quantiles(name: str) -> RestQuantiles:
-        values = np.where(rests, table.numbers[name], np.nan)
+        values = table.of_rest(name)
         counts = name == "contacts"
         return RestQuantiles(
             *(quantile_estimate(values, table.bed, level, counts=counts, why=why) for level in (MEDIAN, HIGH))
@@ -89,16 +100,16 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
 
     density = highest_density(table.position[rests], SHARES)
     faces = table.face[rests]
-    # A program may give the attitude of some landers alone, and these are no sample of all.
-    has_sides = len(faces) > 0 and bool((faces != "").all())
     return JourneyRest(
         of=journeys_at_rest(int(rests.sum()), len(rests)),
         time_s=quantiles("time_s"),
         contacts=quantiles("contacts"),
         distance_m=quantiles("distance"),
         regions=rest_regions(density),
-        faces={str(face): end_share(faces == face, table.bed[rests], why) for face in np.unique(faces) if has_sides},
-        tilt_deg=quantiles("tilt_deg") if has_sides else None,
+        faces={
+            str(face): end_share(faces == face, table.bed[rests], why) for face in np.unique(faces) if table.has_sides
+        },
+        tilt_deg=quantiles("tilt_deg") if table.has_sides else None,
         why_no_regions=density.why,
     )
 
@@ -141,7 +152,7 @@ def with_journeys(study: Study, sides: Sides, runs: DesignRuns, touchdowns: Desi
     found = {}
     for name, one in sides.items():
         own, those = side == name, every == name
-        time = np.where(table.rests, table.numbers["time_s"], np.nan)[own]
+        time = table.of_rest("time_s")[own]
         found[name] = replace(
             one,
             at_rest=end_share(table.rests[own], table.bed[own], why),

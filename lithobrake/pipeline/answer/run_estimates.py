@@ -175,8 +175,8 @@ def parts_of_journeys(job: Job, runs: DesignRuns, table: JourneyTable) -> dict[s
     of_rest = journeys_at_rest(int(rests.sum()), len(rests))
     numbers = {
         "at_rest": (rests.astype(float), everything),
-        "time_s": (np.where(rests, table.numbers["time_s"], np.nan), of_rest),
-        "distance_m": (np.where(rests, table.numbers["distance"], np.nan), of_rest),
+        "time_s": (table.of_rest("time_s"), of_rest),
+        "distance_m": (table.of_rest("distance"), of_rest),
     }
     inputs = _touchdown_inputs(job, runs) | _delivery_inputs(job, runs)
     return {name: _parts(job, runs, inputs, y, of, None) for name, (y, of) in numbers.items()}

@@ -119,7 +119,16 @@ class Soils:
 
     def slope_deg(self, place: np.ndarray) -> float:
         """Slope of the facet of a place on the ground [m], [3], at its centre [deg]."""
-        return float(self._slopes_deg(self._shape.nearest(place[None])[1])[0])
+        facets = self._shape.nearest(place[None])[1]
+        facet = int(facets[0])
+        # Thousands of touchdowns share few facets, and the gravity is worked out once for each of them.
+        if facet not in self._known_slopes:
+            self._known_slopes[facet] = float(self._slopes_deg(facets)[0])
+        return self._known_slopes[facet]
+
+    @cached_property
+    def _known_slopes(self) -> dict[int, float]:
+        return {}
 
     def refuse(self) -> None:
         """Raise StudyError for regions in which this body has no ground."""
