@@ -24,7 +24,7 @@ SOLID_FRACTION = 0.6
 # Blocks of rock over the largest diameter of the lander, where a study gives no size.
 ROCK_IN_LANDERS = 3.0
 # Finest grains that are simulated, over the largest diameter of the lander, where a study does not say.
-FINEST_IN_LANDERS = 0.25
+FINEST_IN_LANDERS = 1.0 / 3.0
 # Grains of a bed at most: more take hours a touchdown.
 MOST_GRAINS = 5000
 # Weights that add up to 1 do so but for the rounding of what a person writes.

@@ -55,7 +55,7 @@ class GroundSection(Section):
     """Distance over the ground after which a lander meets another bed, if ground.unknown = "patchy"."""
     finest: Annotated[float, Number("m", above=0)] | None = None
     """Smallest mean diameter of grains that are simulated: beds of this size stand for finer ground, and the answer
-    says for how much of it. Absent: a quarter of the largest diameter of the lander."""
+    says for how much of it. Absent: a third of the largest diameter of the lander."""
     kind: dict[str, GroundKind] = Field(default={})
 
 

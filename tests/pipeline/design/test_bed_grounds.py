@@ -1,0 +1,60 @@
+"""Which bed a lander meets where the ground is unknown, and what a journey on each kind of it is expected to take."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.planning.planner import plan_of
+from lithobrake.pipeline.site import with_site_gravity
+from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.study import Study, check_tables, load_tables
+
+QUICK = Path(__file__).parents[3] / "scenarios" / "quick.toml"
+BEDS, LANDERS = 6, 300
+
+
+def study(kinds: dict[str, Any], **ground: Any) -> Study:
+    tables = load_tables(QUICK) | {"bed": {"bed_count": BEDS}, "ground": {"kind": kinds} | ground}
+    return with_site_gravity(check_tables(tables, QUICK.parent))
+
+
+def gravel(size: float, weight: float = 1.0) -> dict[str, Any]:
+    return {"weight": weight, "grain_size": size}
+
+
+@pytest.mark.parametrize(("patch", "is_another"), [(20.0, True), (200.0, False)])
+def test_another_patch_begins_after_the_length_that_a_study_gives(patch: float, is_another: bool) -> None:
+    """Patches are cubes: from the middle of one of 20 m the next begins after 10 m, that of 200 m does not."""
+    kinds = {"fine": gravel(0.09, 0.5), "coarse": gravel(0.3, 0.5)}
+    grounds = DrawnDesign(study(kinds, unknown="patchy", patch=patch)).grounds
+    first = 200.0 * np.array([0.2, -0.8, 0.2]) + 10.0
+    own, *next_door = (first + np.array([shift, 3.0, 0.0]) for shift in (9.0, 11.0, 29.0))
+    assert [grounds.bed_at(lander, 2, first, own) for lander in range(LANDERS)] == [2] * LANDERS
+    met = np.array([[grounds.bed_at(lander, 2, first, place) for place in next_door] for lander in range(LANDERS)])
+    # Both places lie in one patch.
+    assert (met[:, 0] == met[:, 1]).all()
+    counts = np.bincount(met[:, 0], minlength=BEDS)
+    if is_another:
+        # Any bed, its own among them, as often as another: 50 of 300, with a standard deviation of 6.5.
+        assert np.abs(counts - LANDERS / BEDS).max() < 26
+    else:
+        assert counts[2] == LANDERS
+
+
+def test_a_kind_of_ground_costs_what_a_study_of_it_alone_costs(tmp_path: Path) -> None:
+    both = {"fine": gravel(0.09, 0.5), "coarse": gravel(0.3, 0.5)}
+
+    def prices(kinds: dict[str, Any]) -> dict[str, tuple[float, float] | None]:
+        plan = plan_of(DrawnDesign(study(kinds)), "quick", StudyFolder(tmp_path / "out"), 1)
+        return {kind.kind: kind.journey_s for kind in plan.kinds}
+
+    found = prices(both)
+    assert list(found) == ["fine", "coarse"]
+    assert found["coarse"] == pytest.approx(prices({"coarse": gravel(0.3)})["coarse"], rel=1e-12)
+    fine, coarse = found.values()
+    assert fine is not None
+    assert coarse is not None
+    assert fine[0] > 2.0 * coarse[0] > 0.0
