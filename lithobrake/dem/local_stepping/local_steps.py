@@ -228,7 +228,7 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
     if pairs.overlap[pair] == 0.0:
         plans.interval[pair] = 0.0
         if pairs.feature_count[pair] == 0:
-            plan_apart(pair, bodies, pairs, flight, agenda, now, rules)
+            plan_apart(pair, bodies, pairs, flight, agenda, pairs.wake[pair], now, rules)
             return True
         approach = approach_of(pair, bodies, cores, planes, pairs, flight, rules)
         if approach.gap > 0.0:
