@@ -69,7 +69,7 @@ class GroundCurve:
 
 @dataclass(frozen=True)
 class GroundKindResults:
-    """The journeys on one kind of ground; with ground.unknown = "patchy" those that ended there."""
+    """The journeys whose first touchdown is on one kind of ground, whichever they meet later."""
 
     weight: float
     """probability of the kind, by the study file"""

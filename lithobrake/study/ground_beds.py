@@ -10,7 +10,7 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.study import lander_checks
 from lithobrake.study.checks import narrowest_period
 from lithobrake.study.ground_checks import material_problems
-from lithobrake.study.ground_kinds import GroundKind
+from lithobrake.study.ground_kinds import GroundKind, GroundSection
 from lithobrake.study.ground_sections import BedSection, Between, Constant
 from lithobrake.study.quantity import Scalar, Uncertain, median, usual_reach
 from lithobrake.study.study import Study
@@ -30,16 +30,19 @@ MOST_GRAINS = 5000
 # Weights that add up to 1 do so but for the rounding of what a person writes.
 ROUNDING = 1e-6
 DRAWN = ("kind", "size", "ratio")
+# Bodies over which uncertain weights of kinds are averaged.
+BODIES = 4096
 
 
 class BedGround(NamedTuple):
     """The ground of a bed. number: of the kind, from 0, in the order of the file; size, mean diameter of its grains
-    [m]; ratio: of the largest to the smallest."""
+    [m]; ratio: of the largest to the smallest; weights: of the kinds on its body, in this order."""
 
     kind: str
     number: int
     size: float
     ratio: float
+    weights: tuple[float, ...] = ()
 
 
 def grounds(study: Study) -> list[BedGround]:
@@ -51,20 +54,45 @@ def _draw(study: Study, first: int, count: int) -> list[BedGround]:
     """The ground of so many beds from the number `first` on: a point of the sequence follows from its number."""
     from lithobrake.chaos import Uniform, sobol_sequence
 
-    uniform = dict.fromkeys(DRAWN, Uniform(0.0, 1.0))
-    points = sobol_sequence(uniform, count, hashed_seed(study.seed, "ground"), skip=first)
-    return [_drawn(study, *point) for point in points.tolist()]
-
-
-def _drawn(study: Study, kind: float, size: float, ratio: float) -> BedGround:
-    """The ground that three numbers between 0 and 1 draw."""
     assert study.ground is not None
-    names = list(study.ground.kind)
-    below = list(accumulate(study.ground.kind[name].weight for name in names))
-    number = min(bisect_right(below, kind), len(names) - 1)
+    uncertain = [name for name, kind in study.ground.kind.items() if isinstance(kind.weight, Uncertain)]
+    uniform = dict.fromkeys([*DRAWN, *uncertain], Uniform(0.0, 1.0))
+    points = sobol_sequence(uniform, count, hashed_seed(study.seed, "ground"), skip=first)
+    return [
+        _drawn(study, kind, size, ratio, dict(zip(uncertain, own, strict=True)))
+        for kind, size, ratio, *own in points.tolist()
+    ]
+
+
+def _drawn(study: Study, kind: float, size: float, ratio: float, weights: Mapping[str, float]) -> BedGround:
+    """The ground that numbers between 0 and 1 draw; weights: those of the kinds whose weight is uncertain."""
+    assert study.ground is not None
+    names, own = list(study.ground.kind), _weights(study.ground.kind, weights)
+    number = min(bisect_right(list(accumulate(own)), kind), len(names) - 1)
     one = study.ground.kind[names[number]]
     drawn = max(_at(grain_size(study, one), size), finest(study))
-    return BedGround(names[number], number, drawn, _at(one.size_ratio, ratio))
+    return BedGround(names[number], number, drawn, _at(one.size_ratio, ratio), own)
+
+
+def _weights(kinds: Mapping[str, GroundKind], drawn: Mapping[str, float]) -> tuple[float, ...]:
+    """The weights of the kinds on one body, in the order of the file; drawn: between 0 and 1, of uncertain ones."""
+    given = [_at(kind.weight, drawn.get(name, 0.5)) for name, kind in kinds.items()]
+    # Of numbers alone no bit changes.
+    return tuple(one / math.fsum(given) for one in given) if drawn else tuple(given)
+
+
+def mean_weights(study: Study) -> dict[str, float]:
+    """The weight of each kind in the mean of bodies: the probability that a bed is of this kind."""
+    from lithobrake.chaos import Uniform, sobol_sequence
+
+    assert study.ground is not None
+    kinds = study.ground.kind
+    uncertain = dict.fromkeys((name for name in kinds if isinstance(kinds[name].weight, Uncertain)), Uniform(0.0, 1.0))
+    if not uncertain:
+        return dict(zip(kinds, _weights(kinds, {}), strict=True))
+    points = sobol_sequence(uncertain, BODIES, hashed_seed(study.seed, "weights")).tolist()
+    bodies = [_weights(kinds, dict(zip(uncertain, point, strict=True))) for point in points]
+    return {name: math.fsum(one) / BODIES for name, one in zip(kinds, zip(*bodies, strict=True), strict=True)}
 
 
 def _at(value: Scalar, part: float) -> float:
@@ -84,13 +112,13 @@ def finer_share(study: Study) -> float:
     assert study.ground is not None
     import numpy as np
 
-    least, found = finest(study), 0.0
-    for kind in study.ground.kind.values():
+    least, found, weights = finest(study), 0.0, mean_weights(study)
+    for name, kind in study.ground.kind.items():
         size = grain_size(study, kind)
         below = float(size.to_chaos().cdf(np.array(least))) if isinstance(size, Uncertain) else float(size < least)
         # Laws with ends go on in a straight line beyond them.
         below = min(max(below, 0.0), 1.0)
-        found += kind.weight * below
+        found += weights[name] * below
     return found
 
 
@@ -117,8 +145,8 @@ def of_ground(study: Study, ground: BedGround) -> Study:
 def typical(study: Study) -> Study:
     """The study with the bed of its likeliest kind of ground, at the median of its sizes."""
     assert study.ground is not None
-    kinds = study.ground.kind
-    name = max(kinds, key=lambda one: kinds[one].weight)
+    kinds, weights = study.ground.kind, mean_weights(study)
+    name = max(kinds, key=weights.__getitem__)
     number, kind = list(kinds).index(name), kinds[name]
     size = max(median(grain_size(study, kind)), finest(study))
     return of_ground(study, BedGround(name, number, size, median(kind.size_ratio)))
@@ -174,12 +202,26 @@ def _ground_problems(study: Study, given: Mapping[str, Any]) -> Iterator[str]:
             f"monte_carlo.sample_count is {study.sample_count} beside [ground]; allowed: 0, as samples are of one "
             "ground; leave it out"
         )
-    total = math.fsum(kind.weight for kind in study.ground.kind.values())
-    if abs(total - 1.0) > ROUNDING:
-        weights = ", ".join(f"{name} {kind.weight:g}" for name, kind in study.ground.kind.items())
-        yield f"the weights of the kinds of ground add up to {total:.6g} ({weights}); allowed: 1; change them"
+    yield from _weight_problems(study.ground)
     for name, kind in study.ground.kind.items():
         yield from _kind_problems(study, name, kind)
+
+
+def _weight_problems(ground: GroundSection) -> Iterator[str]:
+    weights = {name: kind.weight for name, kind in ground.kind.items() if not isinstance(kind.weight, Uncertain)}
+    if len(weights) < len(ground.kind):
+        if len(ground.kind) == 1:
+            yield f"ground.kind.{next(iter(ground.kind))}.weight is uncertain, and there is no other kind; write 1"
+        return
+    if ground.unknown == "both":
+        yield (
+            'ground.unknown is "both" and no ground.kind.NAME.weight is uncertain, so bodies do not differ; give a '
+            'weight a distribution, or write ground.unknown = "patchy"'
+        )
+    total = math.fsum(weights.values())
+    if abs(total - 1.0) > ROUNDING:
+        told = ", ".join(f"{name} {weight:g}" for name, weight in weights.items())
+        yield f"the weights of the kinds of ground add up to {total:.6g} ({told}); allowed: 1; change them"
 
 
 def _kind_problems(study: Study, name: str, kind: GroundKind) -> Iterator[str]:

@@ -23,8 +23,9 @@ class GroundKind(Section):
     """A kind of ground. There may be any number of kinds, each in a table [ground.kind.NAME] of its own. Width, depth
     and number of grains of its beds follow from the grains and the lander; `lithobrake plan` prints them."""
 
-    weight: Annotated[float, Number("", above=0, at_most=1)] = Field(examples=["1.0"])
-    """Probability of this kind. The weights of all kinds add up to 1."""
+    weight: Annotated[Scalar, MaybeUncertain("", above=0, at_most=1)] = Field(examples=["1.0"])
+    """Probability of this kind. The weights of all kinds add up to 1. If one is uncertain, each body has weights of its
+    own, divided by their sum."""
     grain_size: Length | None = Field(
         default=None, examples=['{ distribution = "log_uniform", lower = 0.06, upper = 0.4 }']
     )
@@ -47,12 +48,13 @@ class GroundSection(Section):
     grains of a size of its own. Answers then hold over all grounds that the study allows, and their intervals include
     that the ground is unknown."""
 
-    unknown: Literal["everywhere", "patchy"] = "everywhere"
+    unknown: Literal["everywhere", "patchy", "both"] = "everywhere"
     """"everywhere": the body has one ground, and nobody knows which: each bed stands for a body of its own, and a
     lander stays on its bed. "patchy": the ground differs from place to place, and a lander that flies farther than
-    ground.patch meets another bed."""
+    ground.patch meets another bed. "both": the body is patchy, and nobody knows of what: each bed stands for a body of
+    its own, whose patches have the weights that it draws; a ground.kind.weight is then uncertain."""
     patch: Annotated[float, Number("m", at_least=1e-3, at_most=1e6)] = Field(default=20.0, examples=["20.0"])
-    """Distance over the ground after which a lander meets another bed, if ground.unknown = "patchy"."""
+    """Distance over the ground after which a lander meets another bed, if ground.unknown is "patchy" or "both"."""
     finest: Annotated[float, Number("m", above=0)] | None = None
     """Smallest mean diameter of grains that are simulated: beds of this size stand for finer ground, and the answer
     says for how much of it. Absent: a third of the largest diameter of the lander."""

@@ -9,11 +9,12 @@ import pytest
 
 from lithobrake.study import Study, StudyError, check_tables, load_tables
 from lithobrake.study.checks import narrowest_period
-from lithobrake.study.ground_beds import finer_share, finest, grounds, of_ground, on_ground
+from lithobrake.study.ground_beds import finer_share, finest, grounds, mean_weights, of_ground, on_ground
 from lithobrake.study.ground_presets import GROUND_PRESETS
 
 QUICK = Path(__file__).parents[2] / "scenarios" / "quick.toml"
-GRAVEL = {"weight": 0.75, "grain_size": {"distribution": "log_uniform", "lower": 0.08, "upper": 0.4}}
+GRAVEL = {"weight": 0.75, "grain_size": {"distribution": "log_uniform", "lower": 0.09, "upper": 0.4}}
+SHARE = {"distribution": "uniform", "lower": 0.2, "upper": 0.6}
 KINDS: dict[str, Any] = {"gravel": GRAVEL, "rock": {"weight": 0.25, "rock": True}}
 
 
@@ -33,13 +34,26 @@ def test_beds_draw_kinds_by_weight_and_sizes_by_their_law() -> None:
     # A sequence that fills the square evenly: 18 and 6 of 24, but for one.
     assert abs(kinds.count("gravel") - 18) <= 1
     sizes = np.log([one.size for one in drawn if one.kind == "gravel"])
-    assert sizes.min() >= math.log(0.08)
+    assert sizes.min() >= math.log(0.09)
     assert sizes.max() <= math.log(0.4)
-    assert sizes.mean() == pytest.approx(0.5 * math.log(0.08 * 0.4), abs=0.1)
+    assert sizes.mean() == pytest.approx(0.5 * math.log(0.09 * 0.4), abs=0.1)
     # Rock is three times as large as the lander, whose diagonal is 0.267 m.
     assert [one.size for one in drawn if one.kind == "rock"] == pytest.approx(
         [3.0 * math.hypot(0.1, 0.1, 0.227)] * kinds.count("rock")
     )
+
+
+def test_uncertain_weights_are_those_of_a_body() -> None:
+    """Shares 0.2 to 0.6 and 1 - 0.4 = 0.6 of them all: each body's add up to 1, and their mean is that of many."""
+    whole = study(kind={"gravel": GRAVEL | {"weight": SHARE}, "rock": {"weight": 0.6, "rock": True}})
+    drawn, mean = grounds(whole), mean_weights(whole)
+    assert [math.fsum(one.weights) for one in drawn] == pytest.approx([1.0] * len(drawn))
+    first = [one.weights[0] for one in drawn]
+    assert 0.25 <= min(first) < 0.3 < 0.45 < max(first) <= 0.5
+    # The mean of w / (w + 0.6) over the range, in closed form.
+    exact = 1.0 - 0.6 * math.log(1.2 / 0.8) / 0.4
+    assert mean == pytest.approx({"gravel": exact, "rock": 1.0 - exact}, abs=1e-4)
+    assert np.mean([one.kind == "gravel" for one in drawn]) == pytest.approx(exact, abs=0.1)
 
 
 def test_more_beds_change_the_ground_of_none() -> None:
@@ -48,7 +62,7 @@ def test_more_beds_change_the_ground_of_none() -> None:
     assert grounds(many)[:24] == grounds(few)
 
 
-@pytest.mark.parametrize("size", [0.07, 0.12, 0.4, 2.0])
+@pytest.mark.parametrize("size", [0.09, 0.12, 0.4, 2.0])
 def test_a_bed_is_as_wide_and_deep_as_grains_and_lander_ask(size: float) -> None:
     kind = {"weight": 1.0, "grain_size": size, "size_ratio": 2.0}
     whole = study(kind={"one": kind})
@@ -78,7 +92,7 @@ def test_finer_ground_is_stood_for_by_the_finest_beds() -> None:
     # Half of four octaves of half of the ground.
     assert finer_share(whole) == pytest.approx(0.25)
     assert finer_share(study()) == 0.0
-    assert finest(study()) == pytest.approx(0.25 * math.hypot(0.1, 0.1, 0.227))
+    assert finest(study()) == pytest.approx(math.hypot(0.1, 0.1, 0.227) / 3.0)
 
 
 @pytest.mark.parametrize("name", list(GROUND_PRESETS))
@@ -95,6 +109,9 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"ground": 3}, "ground is 3; allowed: a table"),
     ({"ground": {}}, "[ground] has no kind"),
     ({"ground": {"kind": {"gravel": GRAVEL}}}, "add up to 0.75 (gravel 0.75); allowed: 1"),
+    ({"ground": {"kind": KINDS, "unknown": "both"}}, 'ground.unknown is "both" and no ground.kind.NAME.weight is'),
+    ({"ground": {"kind": {"one": GRAVEL | {"weight": SHARE}}}}, "one.weight is uncertain, and there is no other kind"),
+    ({"ground": {"kind": {"one": GRAVEL | {"weight": SHARE | {"upper": 1.5}}}}}, "ground.kind.one.weight is"),
     ({"ground": {"kind": {"one": {"weight": 1.0}}}}, "ground.kind.one.grain_size is missing"),
     ({"ground": {"kind": {"one": {"weight": 1.5, "grain_size": 0.1}}}}, "ground.kind.one.weight is 1.5"),
     ({"ground": {"kind": {"one": {"weight": True, "grain_size": 0.1}}}}, "ground.kind.one.weight is true"),

@@ -10,7 +10,7 @@ from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.results.ground_results import FinerGround, GroundBed, GroundCurve, GroundKindResults, OverGrounds
 from lithobrake.study import Study
-from lithobrake.study.ground_beds import BedGround, finer_share, finest
+from lithobrake.study.ground_beds import BedGround, finer_share, finest, mean_weights
 from lithobrake.vocabulary.number_words import MEDIAN
 
 # Beds of fewer grounds show no curve.
@@ -18,9 +18,9 @@ FEWEST_OF_CURVE = 6
 
 
 def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None:
-    """What one of the grounds would give; None where all landers have the same ground, or each place its own."""
+    """What one of the grounds would give, or one of the bodies where these are patchy too; None where there is one."""
     ground, rests = design.study.ground, table.rests
-    if ground is None or ground.unknown != "everywhere" or not len(table.end):
+    if ground is None or ground.unknown == "patchy" or not len(table.end):
         return None
     why, faces = why_no_interval(design.study), table.face[rests]
     return OverGrounds(
@@ -74,16 +74,16 @@ def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKi
     """By kind, in the order of the study file; empty for a study of one ground."""
     if design.study.ground is None:
         return {}
-    why, found = why_no_interval(design.study), {}
+    why, found, weights = why_no_interval(design.study), {}, mean_weights(design.study)
     kinds, sizes = (np.array([getattr(one, name) for one in design.grounds.each]) for name in ("kind", "size"))
-    for name, kind in design.study.ground.kind.items():
+    for name in design.study.ground.kind:
         own, beds = kinds[table.bed] == name, np.flatnonzero(kinds == name)
         here = table.taken(np.flatnonzero(own))
         if not len(here.end):
             continue
         faces = here.face[here.rests]
         found[name] = GroundKindResults(
-            weight=kind.weight,
+            weight=weights[name],
             beds=len(np.unique(here.bed)),
             journeys=len(here.end),
             grain_size_m=(float(sizes[beds].min()), float(sizes[beds].max())),

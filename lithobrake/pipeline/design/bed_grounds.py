@@ -88,18 +88,23 @@ class BedGrounds:
 
         A region that names a kind of ground has a bed of this kind, and ground steeper than soil holds is rock, where
         the study has rock. Where the ground is patchy, patches are the cubes of a grid that is fixed to the body; each
-        has one bed for each lander.
+        has one bed for each lander, of a kind by the weights of the lander's body where bodies differ in them.
         """
         ground = self.site.study.ground
         if ground is None:
             return bed
-        patch = np.floor(place / ground.patch).astype(int).tolist() if ground.unknown == "patchy" else []
+        patch = np.floor(place / ground.patch).astype(int).tolist() if ground.unknown != "everywhere" else []
         here = patch != (np.floor(first / ground.patch).astype(int).tolist() if patch else [])
         kinds = self._kinds_at(place)
         if not here and (kinds is None or self.each[bed].kind in kinds):
             return bed
         beds = [number for number, one in enumerate(self.each) if kinds is None or one.kind in kinds]
         chance = np.random.default_rng(hashed_seed(self.site.study.seed, "patch", journey, *patch))
+        if ground.unknown == "both" and beds:
+            own, present = self.each[bed].weights, sorted({self.each[number].number for number in beds})
+            weights = np.array([own[number] for number in present])
+            kind = chance.choice(present, p=weights / weights.sum())
+            beds = [number for number in beds if self.each[number].number == kind]
         # A kind that no bed has stays what it is.
         return beds[int(chance.integers(len(beds)))] if beds else bed
 

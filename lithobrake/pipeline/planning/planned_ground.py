@@ -16,7 +16,7 @@ from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.study.checks import narrowest_period
-from lithobrake.study.ground_beds import of_ground
+from lithobrake.study.ground_beds import mean_weights, of_ground
 from lithobrake.study.ground_checks import LEAST_FRICTION
 from lithobrake.touchdown.soil import boulders, grain_sizes
 from lithobrake.touchdown.study_keys import by_study_keys
@@ -175,7 +175,8 @@ def planned_kinds(design: DrawnDesign, price: Callable[[int], tuple[float, float
     study, found = design.study, []
     if study.ground is None or not study.has_soil:
         return ()
-    for name, kind in study.ground.kind.items():
+    weights = mean_weights(study)
+    for name in study.ground.kind:
         beds = [number for number, one in enumerate(design.grounds.each) if one.kind == name]
         made = [of_ground(study, design.grounds.each[number]).bed for number in beds]
         if not made:
@@ -184,7 +185,7 @@ def planned_kinds(design: DrawnDesign, price: Callable[[int], tuple[float, float
         middle = beds[int(np.argsort(sizes)[len(sizes) // 2])]
         grains, widths = [one.grain_count for one in made], [one.width[0] for one in made]
         ends = ((min(sizes), max(sizes)), (min(grains), max(grains)), (min(widths), max(widths)))
-        found.append(PlannedKind(name, kind.weight, len(beds), *ends, price(middle)))
+        found.append(PlannedKind(name, weights[name], len(beds), *ends, price(middle)))
     return tuple(found)
 
 

@@ -58,3 +58,19 @@ def test_a_kind_of_ground_costs_what_a_study_of_it_alone_costs(tmp_path: Path) -
     assert fine is not None
     assert coarse is not None
     assert fine[0] > 2.0 * coarse[0] > 0.0
+
+
+def test_patches_of_a_body_have_its_own_weights() -> None:
+    """Of two kinds in unknown shares, a lander meets the first in other patches as often as its body has it."""
+    share = {"distribution": "uniform", "lower": 0.1, "upper": 0.9}
+    kinds = {"fine": gravel(0.09) | {"weight": share}, "coarse": gravel(0.3) | {"weight": share}}
+    grounds = DrawnDesign(study(kinds, unknown="both", patch=20.0)).grounds
+    first = np.full(3, 50.0)
+    found = []
+    for bed, own in enumerate(grounds.each):
+        assert sum(own.weights) == pytest.approx(1.0)
+        met = [grounds.each[grounds.bed_at(lander, bed, first, first + 20.0)].number for lander in range(LANDERS)]
+        found.append(np.mean(met))
+        # 300 draws: within three standard deviations.
+        assert found[-1] == pytest.approx(own.weights[1], abs=3.0 * 0.5 / LANDERS**0.5)
+    assert max(found) - min(found) > 0.2
