@@ -289,12 +289,16 @@ def _studentised(predicted: Array, y: Array, rows: NDArray[np.int64], level: flo
 
 
 def _log_scores(predicted: Array, y: Array) -> Array:
-    """Logarithms of mape, rmse and rrmse, and their standard errors to first order, of runs [..., count]: [2, ..., 3]."""
+    """Logarithms of mape, rmse and rrmse of runs [..., count], and their standard errors to first order, [2, ..., 3]."""
     square, deviation = (predicted - y) ** 2, (y - y.mean(axis=-1, keepdims=True)) ** 2
     percentage = absolute_percentage_error(predicted, y)
     mean_square, mean_deviation = (one.mean(axis=-1, keepdims=True) for one in (square, deviation))
     with np.errstate(divide="ignore", invalid="ignore"):
-        mape, error, deviation = percentage.mean(axis=-1, keepdims=True), square / mean_square, deviation / mean_deviation
+        mape, error, deviation = (
+            percentage.mean(axis=-1, keepdims=True),
+            square / mean_square,
+            deviation / mean_deviation,
+        )
         sizes = np.concatenate([mape, np.sqrt(mean_square), np.sqrt(mean_square / mean_deviation)], axis=-1)
         derivatives = (percentage / mape, 0.5 * error, 0.5 * (error - deviation))
         errors = np.stack([one.std(axis=-1) for one in derivatives], axis=-1)

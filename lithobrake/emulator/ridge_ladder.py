@@ -253,7 +253,9 @@ class Smoother:
         # What the ridges have in common is the inverse that takes moments to slopes.
         self.inverse = np.zeros_like(design.gram)
         # Rungs that differ in their penalty alone have their eigenvectors in common.
-        alike = [list(rungs) for _, rungs in groupby(ladder, key=lambda rung: (rung.amplitudes, rung.fades, rung.degree))]
+        alike = [
+            list(rungs) for _, rungs in groupby(ladder, key=lambda rung: (rung.amplitudes, rung.fades, rung.degree))
+        ]
         factors = factors_of([rungs[0] for rungs in alike], design.indices) if alike else ()
         for rungs, scale in zip(alike, factors, strict=True):
             kept = np.nonzero(scale)[0]
