@@ -289,7 +289,7 @@ def _studentised(predicted: Array, y: Array, rows: NDArray[np.int64], level: flo
 
 
 def _log_scores(predicted: Array, y: Array) -> Array:
-    """Logarithms of mape, rmse and rrmse of runs [..., count], and their standard errors to first order, [2, ..., 3]."""
+    """Logarithms of mape, rmse and rrmse of runs [..., count], with standard errors to first order, [2, ..., 3]."""
     square, deviation = (predicted - y) ** 2, (y - y.mean(axis=-1, keepdims=True)) ** 2
     percentage = absolute_percentage_error(predicted, y)
     mean_square, mean_deviation = (one.mean(axis=-1, keepdims=True) for one in (square, deviation))
