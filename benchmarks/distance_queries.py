@@ -9,6 +9,7 @@ import numba
 import numpy as np
 from distance_pairs import Floats, Integers, Library, Poses, units
 
+from lithobrake.compilation import lighter_compilation
 from lithobrake.compilation.compiled import disk_cache
 from lithobrake.dem import Material, World
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes
@@ -32,11 +33,16 @@ DISTANCE, NORMAL, FIRST, SECOND, STEPS = 0, slice(1, 4), slice(4, 7), slice(7, 1
 
 
 def cached(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Compile a function, kept on disk beside the kernels it calls: that folder changes with their sources."""
+    """Compile a function as the package compiles its kernels, kept on disk beside those it calls: that folder changes
+    with their sources.
+    """
     outside, folder = numba.config.CACHE_DIR, disk_cache("dem").folder
     numba.config.CACHE_DIR = str(folder)
     try:
-        return numba.njit(function, cache=folder is not None, error_model="numpy")
+        made = numba.njit(function, cache=folder is not None, error_model="numpy")
+        if lighter_compilation.is_known():
+            made._compiler = lighter_compilation.KernelCompiler(made, is_inner=False)
+        return made
     finally:
         numba.config.CACHE_DIR = outside
 

@@ -126,8 +126,6 @@ def _folds(training: Training) -> list[Integers]:
 
 def _order(matrix: Array, y: Array, method: str) -> Integers:
     """Columns in the order in which the method takes them up; the constant (column 0) is always in and not listed."""
-    from sklearn.linear_model import lars_path, orthogonal_mp
-
     columns = matrix[:, 1:] - matrix[:, 1:].mean(axis=0)
     lengths = np.linalg.norm(columns, axis=0)
     usable = np.nonzero(lengths > 1e-12 * lengths.max(initial=1.0))[0]
@@ -136,22 +134,43 @@ def _order(matrix: Array, y: Array, method: str) -> Integers:
     if not len(usable) or not np.any(centred):
         return np.zeros(0, dtype=np.int64)
     scaled = columns[:, usable] / lengths[usable]
+    active = _pursued(scaled, centred, limit) if method == "omp" else _least_angles(scaled, centred, limit)
+    return (usable[np.asarray(active, dtype=np.int64)] + 1).astype(np.int64)
+
+
+def _least_angles(columns: Array, y: Array, limit: int) -> list[int]:
+    """Columns [count, column_count] of length 1 in the order of least angle regression, at most so many."""
+    from sklearn.linear_model import lars_path
+
     with warnings.catch_warnings():
-        # Either method may reach the data exactly, or columns that depend on others, before the limit; the path up to
-        # there is all that is wanted.
-        warnings.filterwarnings("ignore", message="(?s).*Orthogonal matching pursuit ended prematurely")
+        # The path may reach the data exactly, or columns that depend on others, before the limit; up to there is all
+        # that is wanted.
         warnings.filterwarnings("ignore", message="(?s).*(Regressors in active set degenerate|Early stopping the lars)")
-        if method == "lars":
-            _, active, _ = lars_path(scaled, centred, method="lar", max_iter=limit)
-            return (usable[np.asarray(active, dtype=np.int64)] + 1).astype(np.int64)
-        path = orthogonal_mp(scaled, centred, n_nonzero_coefs=limit, return_path=True)
-    path = np.asarray(path).reshape(len(usable), -1)
-    if path.shape[1] == 0:
-        # An output that varies by rounding alone: no column explains any of it.
-        return np.zeros(0, dtype=np.int64)
-    entered = np.where((path != 0.0).any(axis=1), (path != 0.0).argmax(axis=1), path.shape[1])
-    order = np.argsort(entered, kind="stable")
-    return (usable[order[entered[order] < path.shape[1]]] + 1).astype(np.int64)
+        return list(lars_path(columns, y, method="lar", max_iter=limit)[1])
+
+
+def _pursued(columns: Array, y: Array, limit: int) -> list[int]:
+    """Columns [count, column_count] of length 1 in the order of orthogonal matching pursuit, at most so many: each is
+    the one that has most of what those before leave of y.
+    """
+    chosen: list[int] = []
+    basis = np.empty((limit, len(y)))
+    products, rounding = y @ columns, np.finfo(float).eps
+    least = rounding * float(np.linalg.norm(y))
+    for count in range(limit):
+        place = int(np.argmax(np.abs(products)))
+        rest = columns[:, place].copy()
+        for _ in range(2):
+            # Once more, as rounding leaves some of a column that nearly depends on those before.
+            rest -= (basis[:count] @ rest) @ basis[:count]
+        square = float(rest @ rest)
+        # All of y is explained, or the best column depends on those before.
+        if abs(products[place]) <= least or place in chosen or square <= rounding:
+            break
+        basis[count] = rest / np.sqrt(square)
+        chosen.append(place)
+        products -= (basis[count] @ y) * (basis[count] @ columns)
+    return chosen
 
 
 def _path(matrix: Array, y: Array, order: Integers) -> tuple[Array, Array, Array]:

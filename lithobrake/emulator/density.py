@@ -150,16 +150,19 @@ class BedEffect:
     @property
     def spread(self) -> Array:
         """Root of the covariance of the next run about its mean, [point_count or 1, output_count, output_count]."""
-        values, vectors = np.linalg.eigh(self._next)
         # Rounding must not turn the first run on a bed.
         if (self.covariance == self.before).all():
             return np.broadcast_to(np.eye(len(self.before)), self.covariance.shape)
+        values, vectors = np.linalg.eigh(self._next)
         return (vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]) @ vectors.transpose(0, 2, 1)
 
     def given(self, root: Array, columns: Sequence[int], left: Array, blur: Array) -> "BedEffect":
         """The effect after one more run: left [point_count, len(columns)], what its standardised outputs are beyond
         the mean; blur likewise: their errors; root: as in `Kernels`.
         """
+        if not self.before.any():
+            # On a bed that no other run shares nothing is learnt.
+            return self
         seen = root[list(columns)]
         expected = seen @ self._next @ seen.T
         if blur.any():

@@ -1,9 +1,9 @@
 """Location and scale: ridges that walk from no inputs to all of them, and one that learns how its terms fade."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import groupby
+from itertools import groupby, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,9 +70,9 @@ def _loss(vector: Array, powers: Array, sums: _Sums) -> tuple[float, Array]:
     """Negative evidence and its gradient; the deviation of the scatter is that of most evidence."""
     factors, ridge = np.exp(powers @ vector[:-1]), sums.count * np.exp(vector[-1])
     scaled = factors[:, None] * sums.gram * factors
-    scaled.flat[:: len(scaled) + 1] += ridge
+    np.einsum("ii->i", scaled)[:] += ridge
     # LAPACK itself: what SciPy checks around it takes as long as the matrix, and the search asks thousands of times.
-    lower, failed = linalg.lapack.dpotrf(scaled, lower=1)
+    lower, failed = linalg.lapack.dpotrf(scaled, lower=1, overwrite_a=1)
     if failed:
         # The search steps back from parameters for which rounding makes the matrix indefinite.
         return REFUSED, np.zeros_like(vector)
@@ -82,7 +82,7 @@ def _loss(vector: Array, powers: Array, sums: _Sums) -> tuple[float, Array]:
     unexplained = max(1.0 - float(weighted @ slopes) / sums.total, 1e-12)
     value = 0.5 * (sums.count - 1.0) * np.log(unexplained)
     value += np.log(lower.diagonal()).sum() - 0.5 * len(factors) * np.log(ridge)
-    diagonal = linalg.lapack.dpotri(lower, lower=1)[0].diagonal()
+    diagonal = linalg.lapack.dpotri(lower, lower=1, overwrite_c=1)[0].diagonal()
     by_factor = 1.0 - ridge * diagonal - ridge * slopes**2 * (sums.count - 1.0) / (unexplained * sums.total)
     # The penalty is one over the square of a factor that all terms have.
     return float(value), np.append(powers.T @ by_factor, -0.5 * by_factor.sum())
@@ -102,9 +102,17 @@ class Rung:
 
     def factors(self, indices: Indices) -> Array:
         """Factor of each term [term_count]; 0 leaves it out."""
-        amplitudes, fades = np.array(self.amplitudes), np.array(self.fades)
-        each = np.where(indices > 0, amplitudes * fades ** np.maximum(indices - 1, 0), 1.0)
-        return np.prod(each, axis=1) * (indices.sum(axis=1) <= self.degree)
+        return factors_of([self], indices)[0]
+
+
+def factors_of(rungs: Sequence[Rung], indices: Indices) -> Array:
+    """Factors of the terms of each rung [rung_count, term_count]; 0 leaves a term out."""
+    amplitudes, fades = (np.array([getattr(one, name) for one in rungs])[:, None] for name in ("amplitudes", "fades"))
+    # Terms are many and powers are few: each power is taken once.
+    powers = np.arange(indices.max(initial=1) + 1)[:, None]
+    table = np.where(powers > 0, amplitudes * fades ** np.maximum(powers - 1, 0), 1.0)
+    factors = table[:, indices, np.arange(indices.shape[1])].prod(axis=2)
+    return np.asarray(factors * (indices.sum(axis=1) <= np.array([one.degree for one in rungs])[:, None]))
 
 
 # What of an average is not there is no inputs at all.
@@ -118,7 +126,8 @@ class TermTable:
         self.indices, self.matrix, self.weights, self.total = indices, matrix, weights, float(weights.sum())
         self.centre = weights @ matrix / self.total
         self.centred = matrix - self.centre
-        self.gram = self.centred.T @ (weights[:, None] * self.centred)
+        # By columns, as LAPACK has its matrices, which else would be copied.
+        self.gram = np.asfortranarray(self.centred.T @ (weights[:, None] * self.centred))
 
     def of(self, chosen: NDArray[np.bool_]) -> "TermTable":
         """That of some of the runs, chosen [count]."""
@@ -145,7 +154,10 @@ def best_ladder(design: TermTable, target: Array, *, fades: bool = True, doubt: 
     sums = design.sums(target)
     if sums.total <= 1e-24 * sums.count * float(np.abs(target).max()) ** 2:
         return ()
-    rungs = [*_walked(design.indices, sums), *([_fading(design.indices, sums)] if fades else [])]
+    rungs = _walked(design.indices, sums)
+    if fades:
+        evidence, faded = _fading(design.indices, sums)
+        rungs.append((evidence, lambda: faded))
     return _averaged(rungs, len(rungs) if doubt else 1)
 
 
@@ -158,39 +170,48 @@ def fading_rung(design: TermTable, target: Array) -> Rung | None:
     return rung if any(rung.amplitudes) else None
 
 
-def _walked(indices: Indices, sums: _Sums) -> list[tuple[float, Rung]]:
-    """Rungs on growing sets of inputs, with their evidence over that of no inputs."""
-    rungs: list[tuple[float, Rung]] = []
-    used: tuple[int, ...] = ()
-    left = set(range(indices.shape[1]))
+def _walked(indices: Indices, sums: _Sums) -> list[tuple[float, Callable[[], Rung]]]:
+    """Evidences over that of no inputs of rungs on growing sets of inputs, and what makes each rung: few are kept."""
+    rungs: list[tuple[float, Callable[[], Rung]]] = []
+    count = indices.shape[1]
+    used, left = np.zeros(count, dtype=bool), list(range(count))
     while left:
-        best, added = -np.inf, 0
-        for one in sorted(left):
-            found = list(_rungs(indices, tuple(sorted((*used, one))), sums))
-            rungs += found
-            most = max(evidence for evidence, _ in found)
-            best, added = (most, one) if most > best else (best, added)
-        used, left = (*used, added), left - {added}
+        sets = used | np.eye(count, dtype=bool)[left]
+        degrees = (1, 2) if used.sum() < MOST_OF_SECOND_DEGREE else (1,)
+        evidences = np.stack([_evidences(indices, sets, degree, sums) for degree in degrees], axis=1)
+        places = product(sets, degrees, PENALTIES)
+        rungs += [(one, partial(_rung, *place)) for one, place in zip(evidences.ravel().tolist(), places, strict=True)]
+        used[left.pop(int(np.argmax(evidences.max(axis=(1, 2)))))] = True
     return rungs
 
 
-def _rungs(indices: Indices, inputs: tuple[int, ...], sums: _Sums) -> Iterator[tuple[float, Rung]]:
-    """Rungs on these inputs with their evidence, the logarithm of their marginal likelihood over that of no inputs."""
-    amplitudes = tuple(FADE * (k in inputs) for k in range(indices.shape[1]))
-    fades = (FADE,) * len(amplitudes)
-    for degree in (1, 2) if len(inputs) <= MOST_OF_SECOND_DEGREE else (1,):
-        factors = Rung(amplitudes, fades, degree, 0.0).factors(indices) / FADE
-        kept = factors > 0.0
-        scaled = factors[kept]
-        values, vectors = np.linalg.eigh(scaled[:, None] * sums.gram[np.ix_(kept, kept)] * scaled)
-        squares = (vectors.T @ (scaled * sums.moments[kept])) ** 2
-        values = np.maximum(values, 0.0)
-        ridges = sums.count * np.array(PENALTIES)[:, None]
-        unexplained = np.maximum(1.0 - (squares / (values + ridges)).sum(axis=1) / sums.total, 1e-12)
+def _rung(inputs: NDArray[np.bool_], degree: int, penalty: float) -> Rung:
+    """The rung on a set of inputs [input_count]."""
+    return Rung(tuple((FADE * inputs).tolist()), (FADE,) * len(inputs), degree, penalty * FADE**2)
+
+
+def _evidences(indices: Indices, sets: NDArray[np.bool_], degree: int, sums: _Sums) -> Array:
+    """Evidence, the logarithm of the marginal likelihood over that of no inputs, of rungs on sets of inputs
+    [set_count, input_count], for each penalty, [set_count, penalty_count].
+    """
+    total = indices.sum(axis=1)
+    factors = FADE ** (total - 1.0)
+    gram, moments = factors[:, None] * sums.gram * factors, factors * sums.moments
+    kept = (total <= degree) & ~(~sets @ (indices > 0).T)
+    ridges = sums.count * np.array(PENALTIES)[:, None]
+    sizes, evidences = kept.sum(axis=1), np.empty((len(sets), len(PENALTIES)))
+    # Sets of as many terms are one call: the matrices are small, and calls are what takes time.
+    for size in np.unique(sizes).tolist():
+        alike = sizes == size
+        terms = np.nonzero(kept[alike])[1].reshape(-1, size)
+        values, vectors = np.linalg.eigh(gram[terms[:, :, None], terms[:, None]])
+        squares = (vectors.transpose(0, 2, 1) @ moments[terms][:, :, None])[:, None, :, 0] ** 2
+        values = np.maximum(values, 0.0)[:, None]
+        unexplained = np.maximum(1.0 - (squares / (values + ridges)).sum(axis=2) / sums.total, 1e-12)
         # Of a normal law whose scatter is unknown, with the constant integrated out: so count - 1.
-        evidences = -0.5 * ((sums.count - 1.0) * np.log(unexplained) + np.log1p(values / ridges).sum(axis=1))
-        for penalty, evidence in zip(PENALTIES, evidences.tolist(), strict=True):
-            yield evidence, Rung(amplitudes, fades, degree, penalty * FADE**2)
+        logarithms = np.log1p(values / ridges).sum(axis=2)
+        evidences[alike] = -0.5 * ((sums.count - 1.0) * np.log(unexplained) + logarithms)
+    return evidences
 
 
 def _fading(indices: Indices, sums: _Sums) -> tuple[float, Rung]:
@@ -206,7 +227,7 @@ def _fading(indices: Indices, sums: _Sums) -> tuple[float, Rung]:
     return evidence - float(cost), rung
 
 
-def _averaged(rungs: list[tuple[float, Rung]], alone: float) -> Ladder:
+def _averaged(rungs: list[tuple[float, Callable[[], Rung]]], alone: float) -> Ladder:
     """Rungs weighted by their evidence; those of little weight and no inputs at all take part in the sum alone.
 
     alone: weight of no inputs beside that of a rung of the same evidence.
@@ -218,7 +239,7 @@ def _averaged(rungs: list[tuple[float, Rung]], alone: float) -> Ladder:
     kept = weights >= LEAST_WEIGHT
     share = weights.sum() / weights[kept].sum() if kept.any() else 1.0
     return tuple(
-        replace(rung, weight=float(weight * share))
+        replace(rung(), weight=float(weight * share))
         for (_, rung), weight, keep in zip(rungs, weights, kept, strict=True)
         if keep
     )
@@ -232,14 +253,17 @@ class Smoother:
         # What the ridges have in common is the inverse that takes moments to slopes.
         self.inverse = np.zeros_like(design.gram)
         # Rungs that differ in their penalty alone have their eigenvectors in common.
-        for _, alike in groupby(ladder, key=lambda rung: (rung.amplitudes, rung.fades, rung.degree)):
-            rungs = list(alike)
-            factors = rungs[0].factors(design.indices)
-            kept = np.nonzero(factors)[0]
-            scaled = factors[kept]
-            values, vectors = np.linalg.eigh(scaled[:, None] * design.gram[np.ix_(kept, kept)] * scaled)
-            damped = sum(rung.weight / (np.maximum(values, 0.0) + rung.penalty * design.total) for rung in rungs)
-            self.inverse[np.ix_(kept, kept)] += scaled[:, None] * ((vectors * damped) @ vectors.T) * scaled
+        alike = [
+            list(rungs) for _, rungs in groupby(ladder, key=lambda rung: (rung.amplitudes, rung.fades, rung.degree))
+        ]
+        factors = factors_of([rungs[0] for rungs in alike], design.indices) if alike else ()
+        for rungs, scale in zip(alike, factors, strict=True):
+            kept = np.nonzero(scale)[0]
+            block, scaled = np.ix_(kept, kept), scale[kept]
+            values, vectors = np.linalg.eigh(scaled[:, None] * design.gram[block] * scaled)
+            weights, penalties = np.array([(rung.weight, rung.penalty) for rung in rungs]).T[:, :, None]
+            damped = (weights / (np.maximum(values, 0.0) + penalties * design.total)).sum(axis=0)
+            self.inverse[block] += scaled[:, None] * ((vectors * damped) @ vectors.T) * scaled
 
     def coefficients(self, target: Array) -> Array:
         """Coefficients of a target [count], the constant first, [1 + term_count]."""

@@ -34,6 +34,7 @@ from lithobrake.chaos import (
 )
 from lithobrake.chaos.sobol_indices import _by_grid as moments_by_grid
 from lithobrake.chaos.sobol_indices import central_moments
+from lithobrake.chaos.sparse_regression import _order
 
 ISHIGAMI = {name: Uniform(-np.pi, np.pi) for name in ("a", "b", "c")}
 ISHIGAMI_VARIANCE = 49.0 / 8.0 + 0.1 * np.pi**4 / 5.0 + 0.01 * np.pi**8 / 18.0 + 0.5
@@ -206,6 +207,20 @@ def test_inputs_of_few_values_limit_only_their_own_degree(method):
     surrogate = fit(inputs, x, x[:, 0] + np.tanh(3.0 * x[:, 1]), method=method)
     assert surrogate.score(test, test[:, 0] + np.tanh(3.0 * test[:, 1]))["y"]["rrmse"] < 1e-3
     assert surrogate.multi_indices[:, 0].max() <= 2
+
+
+@pytest.mark.parametrize("size", [1.0, 1e-9])
+def test_terms_enter_in_the_order_of_another_library(size):
+    from sklearn.linear_model import orthogonal_mp
+
+    random = np.random.default_rng(5)
+    matrix = np.column_stack([np.ones(60), random.normal(size=(60, 90))])
+    y = matrix[:, 7] - 0.6 * matrix[:, 30] + 0.3 * random.normal(size=60)
+    columns = matrix[:, 1:] - matrix[:, 1:].mean(axis=0)
+    path = orthogonal_mp(columns / np.linalg.norm(columns, axis=0), y - y.mean(), n_nonzero_coefs=30, return_path=True)
+    entered = np.where((path != 0.0).any(axis=1), (path != 0.0).argmax(axis=1), 30)
+    # The unit of an output is nothing to its terms.
+    assert _order(matrix, size * y, "omp").tolist() == (1 + np.argsort(entered, kind="stable")[:30]).tolist()
 
 
 def test_equal_points_and_far_too_few_still_give_an_expansion():

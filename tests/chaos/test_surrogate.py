@@ -188,11 +188,11 @@ import hashlib, sys
 import numpy as np
 from lithobrake.chaos import Uniform, d_optimal, fit, gradient, sobol_sequence
 inputs = {name: Uniform(0.0, 1.0) for name in "abcde"}
-x = sobol_sequence(inputs, 300)
+x = sobol_sequence(inputs, 120)
 y = np.column_stack([np.minimum(x[:, 0], x[:, 1]) + x[:, 2] * x[:, 3], np.sin(x @ np.arange(5.0))])
 digest = hashlib.sha256()
 one = fit(inputs, x, y[:, 0], method="gaussian_process")
-for surrogate in (one, fit(inputs, x, y, degree=4), fit(inputs, x[:120], y[:120], method="omp", degree=4)):
+for surrogate in (one, fit(inputs, x, y, degree=3), fit(inputs, x[:60], y[:60], method="omp", degree=3)):
     digest.update(surrogate.coefficients.tobytes() + surrogate(x).tobytes() + gradient(surrogate, x).tobytes())
 digest.update(d_optimal(inputs, 60, degree=3).tobytes())
 print(digest.hexdigest())

@@ -101,6 +101,7 @@ def test_branches_that_cross_are_as_near_as_a_published_expansion_makes_them() -
     assert max(errors) < 0.04
 
 
+@pytest.mark.usefixtures("quick")
 @pytest.mark.parametrize(("centre", "distant"), [(10.0, (0,)), (1.0, ())])
 def test_a_bound_that_is_far_bends_nothing(centre: float, distant: tuple[int, ...]) -> None:
     """A normal law far from its bound takes no logarithm; a lognormal one near it does."""
@@ -136,6 +137,7 @@ def fitted(slope: float, noise: float, count: int, seed: int) -> emulator.Emulat
     return emulator.fit(MEAN_LAW_INPUTS, x, law + noise * rng.standard_normal(count))
 
 
+@pytest.mark.usefixtures("quick")
 def test_indices_are_those_of_the_polynomial() -> None:
     found = fitted(slope=1.0, noise=0.0, count=200, seed=0).mean_law()
     # Variances of a, b / 3 and their product: 1/3, 1/9 and 1/3.
@@ -145,7 +147,10 @@ def test_indices_are_those_of_the_polynomial() -> None:
 
 
 @pytest.mark.parametrize("explained", [0.1, 0.3])
-def test_the_share_of_the_inputs_is_freed_of_noise(explained: float) -> None:
+def test_the_share_of_the_inputs_is_freed_of_noise(explained: float, request: pytest.FixtureRequest) -> None:
+    if explained > 0.2:
+        # A tenth is in doubt where few beds are left out at a time.
+        request.getfixturevalue("quick")
     noise = np.sqrt(7.0 / 9.0 * (1.0 / explained - 1.0))
     shares = [fitted(1.0, noise, 240, seed).mean_law().share[0] for seed in range(10)]
     # Ten studies with a standard deviation of about 0.05 each.
@@ -176,6 +181,7 @@ def test_runs_that_are_no_more_than_terms_tell_of_no_input(run_count: int, recwa
     assert found.any() == (run_count == 5)
 
 
+@pytest.mark.usefixtures("quick")
 def test_a_level_must_be_a_probability() -> None:
     with pytest.raises(ValueError, match=r"level is 90"):
         fitted(1.0, 1.0, 60, 0).found_inputs(level=90)

@@ -229,18 +229,26 @@ def test_elastic_faces_give_back_all_they_take(depth):
     assert after["kinetic"] == pytest.approx(before, rel=1e-3)
 
 
+# Two boxes, and how deep one lies in the other.
+PAIR = Box((0.1, 0.1, 0.1)), Box((0.08, 0.12, 0.1))
+DEPTH = 0.3 * (PAIR[0].rounding + PAIR[1].rounding)
+# Pairs a metre apart in one world, which share the cost of making it.
+PAIRS = 100
+
+
 def forces_along(path, steps):
     """Force and torque over a length on the second of two boxes [N] in the poses along a path, [steps + 1, 6]."""
-    first, second = Box((0.1, 0.1, 0.1)), Box((0.08, 0.12, 0.1))
-    found = []
-    for share in np.linspace(0.0, 1.0, steps + 1):
-        place, turn = path(share)
+    found, stuff, shares = [], material(1.0, 0.0, 1e7), np.linspace(0.0, 1.0, steps + 1)
+    for start in range(0, len(shares), PAIRS):
         world = World(time_step=1e-9)
-        world.add_body(first, material(1.0, 0.0, 1e7), (0, 0, 0))
-        world.add_body(second, material(1.0, 0.0, 1e7), place, orientation=turn)
-        found.append(np.concatenate([world.contact_force[1], world.contact_torque[1] / 0.05]))
-    assert np.abs(found).max() > 0.0
-    return np.array(found)
+        for number, share in enumerate(shares[start : start + PAIRS]):
+            (x, y, z), turn = path(share)
+            world.add_body(PAIR[0], stuff, (0, number, 0))
+            world.add_body(PAIR[1], stuff, (x, number + y, z), orientation=turn)
+        found.append(np.hstack([world.contact_force[1::2], world.contact_torque[1::2] / 0.05]))
+    forces = np.concatenate(found)
+    assert np.abs(forces).max() > 0.0
+    return forces
 
 
 def largest_jump(forces):
@@ -250,8 +258,7 @@ def largest_jump(forces):
 
 def slide(share):
     """A face slides over a face, yawed, past edges and corners of both."""
-    depth = 0.3 * (Box((0.1, 0.1, 0.1)).rounding + Box((0.08, 0.12, 0.1)).rounding)
-    return (-0.06 + 0.1 * share, 0.013 * share, 0.1 - depth), (math.cos(0.1), 0.0, 0.0, math.sin(0.1))
+    return (-0.06 + 0.1 * share, 0.013 * share, 0.1 - DEPTH), (math.cos(0.1), 0.0, 0.0, math.sin(0.1))
 
 
 def tilt(share):
@@ -259,8 +266,7 @@ def tilt(share):
     angle = -0.05 + (0.5 * math.pi + 0.1) * share
     corners = np.array([(y, z) for y in (-0.06, 0.06) for z in (-0.05, 0.05)])
     lowest = (corners @ (math.sin(angle), math.cos(angle))).min()
-    depth = 0.3 * (Box((0.1, 0.1, 0.1)).rounding + Box((0.08, 0.12, 0.1)).rounding)
-    return (0.007, 0.004, 0.05 - lowest - depth), (math.cos(0.5 * angle), math.sin(0.5 * angle), 0.0, 0.0)
+    return (0.007, 0.004, 0.05 - lowest - DEPTH), (math.cos(0.5 * angle), math.sin(0.5 * angle), 0.0, 0.0)
 
 
 @pytest.mark.parametrize("path", [slide, tilt])

@@ -9,15 +9,18 @@ from lithobrake.report import write_report
 from lithobrake.results import open_study
 from lithobrake.results.page_data import PageData, page_results
 
+from ..shared_folders import shared_folder
 from .finished_studies import asked_study, first_study, paper_study
 
 
 def finished(factory: pytest.TempPathFactory, study: Callable[[Path], None]) -> Path:
     """The folder of a study with its page."""
-    folder = factory.mktemp(study.__name__) / "study"
-    study(folder)
-    write_report(folder)
-    return folder
+
+    def make(folder: Path) -> None:
+        study(folder)
+        write_report(folder)
+
+    return shared_folder(factory, study.__name__, make)
 
 
 def html(folder: Path) -> str:
