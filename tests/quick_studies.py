@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from lithobrake.campaign import LocalExecutor
+from lithobrake.campaign import LocalExecutor, executors
 from lithobrake.campaign.single_run import Limits
 from lithobrake.campaign.worker import pickled
 from lithobrake.emulator import validation
@@ -38,6 +38,14 @@ class OwnProcess(LocalExecutor):
         except Exception as error:
             future.set_exception(error)
         return future
+
+
+@contextmanager
+def one_process() -> Iterator[None]:
+    """Quick studies that have one worker where none are asked for, as on a machine of one core."""
+    with quick_studies(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(executors, "available_cores", lambda: 1)
+        yield
 
 
 @contextmanager

@@ -20,6 +20,8 @@ from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.serve import ClientGoneError, ClientServer, ServedModel
 from lithobrake.vocabulary.quantities import OUTPUTS
 
+from ..quick_studies import quick_studies
+
 umbridge = pytest.importorskip("umbridge")
 
 BALL = Path(__file__).parents[2] / "examples" / "ball_on_plate.toml"
@@ -275,7 +277,8 @@ def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(
         head, _, tail = text.partition("[design]")
         tail = tail[tail.index("[monte_carlo]") :].replace("10_000", "200").replace("count = 50", "count = 5")
         path.write_text(f"{head}[design]\nrun_count = 60\n\n{tail.replace('count = 200 ', 'count = 0 ')}")
-        results = lithobrake.run(path, tmp_path / "out", workers=1, report=False)
+        with quick_studies():
+            results = lithobrake.run(path, tmp_path / "out", workers=1, report=False)
         server.shutdown()
     assert results.runs.row_count == 60
     assert set(results.runs["outcome"].tolist()) == {"clear"}
