@@ -26,8 +26,6 @@ SMALLEST_FREEDOM = 0.05
 SCATTER_SHARE = 0.05
 # Fewer test runs than this, drawn anew, repeat each other too often to tell a spread.
 FEWEST_TEST_RUNS = 5
-# Numbers of runs that are drawn and scored at once.
-SCORED_AT_ONCE = 100_000
 
 
 @dataclass(frozen=True)
@@ -274,14 +272,12 @@ def _studentised(predicted: Array, y: Array, rows: NDArray[np.int64], level: flo
     logarithms, errors = _log_scores(predicted, y)
     if len(y) < FEWEST_TEST_RUNS:
         return np.array([[0.0] * 3, [np.inf] * 3])
-    # A part of the draws at once, so that memory does not grow with their number.
-    parts = np.array_split(rows, -(-rows.size // SCORED_AT_ONCE))
-    drawn, drawn_errors = np.concatenate([_log_scores(predicted[part], y[part]) for part in parts], axis=1)
+    draws = np.stack([_log_scores(predicted[draw], y[draw]) for draw in rows])
     # A bound that overflows is infinite: so few runs bound nothing.
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        distance = (drawn - logarithms) / drawn_errors
+        distance = (draws[:, 0] - logarithms) / draws[:, 1]
         # A draw of one and the same run has no standard error, so it is infinitely far.
-        distance = np.where(np.isnan(distance), np.sign(drawn - logarithms) * np.inf, distance)
+        distance = np.where(np.isnan(distance), np.sign(draws[:, 0] - logarithms) * np.inf, distance)
         # No interpolation between distances that may be infinite.
         high = np.quantile(distance, 0.5 + 0.5 * level, axis=0, method="higher")
         low = np.quantile(distance, 0.5 - 0.5 * level, axis=0, method="lower")
@@ -290,16 +286,12 @@ def _studentised(predicted: Array, y: Array, rows: NDArray[np.int64], level: flo
 
 
 def _log_scores(predicted: Array, y: Array) -> Array:
-    """Logarithms of mape, rmse and rrmse, and their standard errors to first order, [2, ..., 3].
-
-    predicted, y [..., count]: of one set of runs, or of many.
-    """
-    square, deviation = (predicted - y) ** 2, (y - y.mean(axis=-1, keepdims=True)) ** 2
+    """Logarithms of mape, rmse and rrmse, and their standard errors to first order, [2, 3]."""
+    square, deviation = (predicted - y) ** 2, (y - y.mean()) ** 2
     percentage = absolute_percentage_error(predicted, y)
-    mean_square, variance = (values.mean(axis=-1, keepdims=True) for values in (square, deviation))
+    mean_square = float(square.mean())
     with np.errstate(divide="ignore", invalid="ignore"):
-        sizes = [percentage.mean(axis=-1, keepdims=True), np.sqrt(mean_square), np.sqrt(mean_square / variance)]
-        error, spread = square / mean_square, deviation / variance
-        derivatives = np.stack([percentage / sizes[0], 0.5 * error, 0.5 * (error - spread)], axis=-2)
-        errors = derivatives.std(axis=-1) / np.sqrt(max(y.shape[-1] - 1, 1))
-        return np.stack([np.log(np.concatenate(sizes, axis=-1)), errors])
+        sizes = np.array([percentage.mean(), np.sqrt(mean_square), np.sqrt(mean_square / deviation.mean())])
+        error, deviation = square / mean_square, deviation / deviation.mean()
+        derivatives = np.stack([percentage / sizes[0], 0.5 * error, 0.5 * (error - deviation)])
+        return np.stack([np.log(sizes), derivatives.std(axis=1) / np.sqrt(max(len(y) - 1, 1))])
