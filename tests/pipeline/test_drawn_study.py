@@ -138,7 +138,9 @@ def test_the_landing_that_is_shown_is_the_run_of_the_median_speed(soil: Path, tm
     made = (out / "telling_landing.h5").stat().st_mtime_ns
     run_study(StudySource.read(study), out, until="telling_landing", worker_count=1)
     assert (out / "telling_landing.h5").stat().st_mtime_ns == made
-    run_study(StudySource.read(edit(study, {"run_count = 4": "run_count = 5"})), out, until="telling_landing", worker_count=1)
+    run_study(
+        StudySource.read(edit(study, {"run_count = 4": "run_count = 5"})), out, until="telling_landing", worker_count=1
+    )
     assert (out / "telling_landing.h5").stat().st_mtime_ns > made
 
 

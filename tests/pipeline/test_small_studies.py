@@ -125,6 +125,7 @@ def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path)
         "--workers", "1"]  # fmt: skip
     with subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as first:
         while not (tmp_path / "out" / "study.toml").is_file():
+            assert first.poll() is None
             time.sleep(0.01)
         os.kill(first.pid, signal.SIGSTOP)
         said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
