@@ -12,6 +12,10 @@ for name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
 # Beds that a test needs are poured: the tests of the library have one of their own.
 os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
 
+# A program of an example begins with python3: this interpreter, and none that a manager of versions chooses at each
+# start, which takes eight times as long as the program.
+os.environ["PATH"] = os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)])
+
 # Files that come first. One compiles all kernels of the engine, which the others then find, and another one that calls
 # none of them runs meanwhile. Then those that take long, the longest first: at the end one process would work on them
 # while the other waits.

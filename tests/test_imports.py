@@ -1,6 +1,7 @@
 """Imports run one way: dem <- touchdown <- pipeline <- cli; chaos <- emulator; campaign and smallbody stand alone."""
 
 import ast
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -63,6 +64,7 @@ def part_of(path: Path) -> str:
     return inside.parts[0] if len(inside.parts) > 1 else inside.stem
 
 
+@cache
 def imported_names(path: Path, only_at_load: bool = False) -> set[str]:
     """The full names that a file imports: modules, and what comes out of them; wherever in the file it does so, or when
     it is itself imported. A face whose names are imported late counts as importing them.
@@ -91,6 +93,7 @@ def imported_parts(path: Path) -> set[str]:
     return {part for part in parts if not part.startswith("__")}
 
 
+@cache
 def imported_file(name: str) -> Path:
     """The file that an imported name stands in: a module, or what holds the last part of the name."""
     for module in (name, name.rpartition(".")[0]):

@@ -13,6 +13,7 @@ from typing import Any
 import h5py
 import pytest
 
+from lithobrake import run
 from lithobrake.results import open_study
 from lithobrake.results.study_files import json_values
 from lithobrake.results.summary import Summary
@@ -21,10 +22,10 @@ from .command_line import lithobrake
 from .few_grains import EXPANSION, ONE_IMPACT, few_grains
 
 STUDY = f"""title = "A few grains"
-monte_carlo = {{ sample_count = 500 }}
+monte_carlo = {{ sample_count = 200 }}
 site = {{ mass = {{ distribution = "uniform", lower = 5.0e11, upper = 5.6e11 }} }}
-flight = {{ flight_count = 10, duration = 20000.0 }}
-hard_ground = {{ count = 20 }}
+flight = {{ flight_count = 5, duration = 20000.0 }}
+hard_ground = {{ count = 5 }}
 {few_grains(45, width=0.5, lander_diameter=0.14, sides="walls")}{ONE_IMPACT}{EXPANSION}screening_level = 1
 screening_degree = 1
 refined_level = 1
@@ -152,7 +153,8 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     assert "to continue, run the same command" in said
     assert "Traceback" not in said
     assert 2 <= finished_runs(other) < finished_runs(out)
-    go_on(study, other, workers=1)
+    # To the summary: pages of the same numbers are the same bytes, which tests/report looks at.
+    run(study, other, workers=1, report=False)
     assert summary(other)["results"] == summary(out)["results"]
     assert summary(other)["study"] == summary(out)["study"]
     assert (other / "flights.csv").read_bytes() == (out / "flights.csv").read_bytes()

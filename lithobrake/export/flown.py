@@ -5,6 +5,7 @@ A flight is one arc of a journey: the first, from the touchdown to the next impa
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from lithobrake import smallbody
 from lithobrake.results import StudyResults, Table
-from lithobrake.smallbody import Body, Shape, fly
+from lithobrake.smallbody import Body, Partner, Shape, fly
 from lithobrake.smallbody.built_in_bodies import ball_partner
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
@@ -228,14 +229,30 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
     """
     refuse_rotation(results)
     site, name = results.study["site"], body_name(results)
-    partner = None
-    if site["body"] in BUILT_IN_BODIES:
-        partner = smallbody.built_in_body(site["body"], partner=site["partner"]).partner
+    partner = _partner(site["body"], site["partner"]) if site["body"] in BUILT_IN_BODIES else None
+    vertices, faces = results.body_shape
     # A study of before this key has none.
-    shape = Shape(*results.body_shape, name=name, gravity_facets=site.get("gravity_facets"))
+    shape = _shape(vertices.tobytes(), faces.tobytes(), name, site.get("gravity_facets"))
     body = Body(shape, mass, spin_period, name, partner)
     given = site.get("partner_body")
     return body if given is None else replace(body, partner=ball_partner(body, **given))
+
+
+# Files of several kinds are written of one study: moments, grid and table of its body are made once for all of them.
+@lru_cache(maxsize=2)
+def _shape(vertices: bytes, faces: bytes, name: str, gravity_facets: int | None) -> Shape:
+    """The shape of arrays of three numbers a row, by their content."""
+    return Shape(
+        np.frombuffer(vertices, np.float64).reshape(-1, 3),
+        np.frombuffer(faces, np.int64).reshape(-1, 3),
+        name=name,
+        gravity_facets=gravity_facets,
+    )
+
+
+@lru_cache(maxsize=2)
+def _partner(name: str, partner: bool) -> Partner | None:
+    return smallbody.built_in_body(name, partner=partner).partner
 
 
 def refuse_rotation(results: StudyResults) -> None:

@@ -11,6 +11,7 @@ import reprlib
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from os import PathLike
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
@@ -180,8 +181,11 @@ def hashed_seed(*values: Any) -> int:
     return int(json_hash(list(values))[:12], 16)
 
 
+@cache
 def source_hash(*parts: str) -> str:
     """Hash of the sources of parts or files of the package: results of other code are other results.
+
+    As they are when it is first asked for: what a process has loaded does not change with its file.
 
     Raises ValueError for a part that there is not: its code would be left out of the hash unseen.
     """

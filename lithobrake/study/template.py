@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Iterator
+from functools import cache
 from itertools import groupby
 from typing import Any
 
@@ -25,6 +26,7 @@ DISTRIBUTION_WORDS = (
 )
 
 
+@cache
 def template() -> str:
     """The text of a study of the first bounce in which every key stands with its meaning, unit, range and default.
 

@@ -14,6 +14,7 @@ class Cluster:
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.processes = folder, dict[str, subprocess.Popen[bytes]]()
+        self._has_nannies = False
         here = [str(Path(__file__).parent), str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]
         self.environment = os.environ | {"PYTHONPATH": os.pathsep.join(here)}
         self.start("scheduler", "--host", "127.0.0.1", "--port", "0")
@@ -30,6 +31,20 @@ class Cluster:
     def add_worker(self, name: str, nanny: bool = False) -> None:
         self.start(name, self.address, "--nthreads", "1", "--nanny" if nanny else "--no-nanny", "--name", name)
         self.said(name, "Registered to:")
+
+    def workers(self, count: int, nannies: bool = False) -> list["subprocess.Popen[bytes]"]:
+        """So many workers, those that live still and new ones; none of the other kind, with or without a nanny."""
+        if nannies != self._has_nannies:
+            for worker in self._living():
+                worker.terminate()
+                worker.wait()
+            self._has_nannies = nannies
+        for number in range(len(self.processes), len(self.processes) + count - len(self._living())):
+            self.add_worker(f"worker_{number}", nannies)
+        return self._living()
+
+    def _living(self) -> list["subprocess.Popen[bytes]"]:
+        return [one for name, one in self.processes.items() if name != "scheduler" and one.poll() is None]
 
     def said(self, name: str, words: str) -> str:
         """The line of a log that has these words, once it is there."""

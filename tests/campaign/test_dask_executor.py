@@ -3,7 +3,7 @@
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -30,34 +30,46 @@ def what_came(runs: Runs) -> list[tuple[Any, ...]]:
     return [(e.key, e.status, e.outcome, e.inputs, e.outputs, e.draws, e.seed, e.reason) for e in runs.records]
 
 
-def losing_a_worker(made: Cluster, is_time: Callable[[Tally], bool]) -> Callable[[Tally], None]:
-    """Add two workers; give what kills the first of them when it is time."""
-    made.add_worker("first")
-    made.add_worker("second")
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """One cluster: each test has the workers that it asks for, and the last one ends the scheduler."""
+    with cluster(tmp_path_factory.mktemp("cluster")) as made:
+        yield made
+
+
+def losing(worker: "subprocess.Popen[bytes]", is_time: Callable[[Tally], bool]) -> Callable[[Tally], None]:
+    """What kills a worker when it is time."""
 
     def lose(state: Tally) -> None:
-        if is_time(state) and made.processes["first"].poll() is None:
-            made.processes["first"].kill()
-            made.processes["first"].wait()
+        if is_time(state) and worker.poll() is None:
+            worker.kill()
+            worker.wait()
 
     return lose
 
 
-def test_a_cluster_that_loses_a_worker_gives_the_bits_of_this_machine(tmp_path: Path) -> None:
-    here = campaign(tmp_path / "here.sqlite", LocalExecutor(2))
-    with cluster(tmp_path) as made:
-        lose_a_worker = losing_a_worker(made, lambda state: state.done >= 10)
-        there = campaign(tmp_path / "there.sqlite", DaskExecutor(made.address), progress=lose_a_worker)
-        assert made.processes["first"].poll() is not None
+@pytest.fixture(scope="module")
+def here(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Any, ...]]:
+    """The campaign on this machine."""
+    return campaign(tmp_path_factory.mktemp("here") / "here.sqlite", LocalExecutor(2))
+
+
+def test_a_cluster_that_loses_a_worker_gives_the_bits_of_this_machine(
+    made: Cluster, here: list[tuple[Any, ...]], tmp_path: Path
+) -> None:
+    lost, _ = made.workers(2)
+    lose_a_worker = losing(lost, lambda state: state.done >= 10)
+    there = campaign(tmp_path / "there.sqlite", DaskExecutor(made.address), progress=lose_a_worker)
+    assert lost.poll() is not None
     assert there == here
 
 
-def test_chains_on_a_cluster_that_loses_a_worker_are_those_of_this_machine(tmp_path: Path) -> None:
-    with cluster(tmp_path) as made:
-        lose_a_worker = losing_a_worker(made, lambda state: state.ended >= 30)
-        with DaskExecutor(made.address) as executor:
-            there = chains(tmp_path, executor, models.collatz_after_a_moment, progress=lose_a_worker)
-        assert made.processes["first"].poll() is not None
+def test_chains_on_a_cluster_that_loses_a_worker_are_those_of_this_machine(made: Cluster, tmp_path: Path) -> None:
+    lost, _ = made.workers(2)
+    lose_a_worker = losing(lost, lambda state: state.ended >= 30)
+    with DaskExecutor(made.address) as executor:
+        there = chains(tmp_path, executor, models.collatz_after_a_moment, progress=lose_a_worker)
+    assert lost.poll() is not None
     (tmp_path / "here").mkdir()
     with LocalExecutor(1) as executor:
         here = chains(tmp_path / "here", executor)
@@ -77,47 +89,46 @@ def done_count(path: Path) -> int:
     return sum(entry.status == "done" for entry in read_records(path))
 
 
-def test_a_coordinator_that_is_killed_loses_no_run_that_its_cluster_has_made(tmp_path: Path) -> None:
-    path, here = tmp_path / "there.sqlite", campaign(tmp_path / "here.sqlite", LocalExecutor(2))
-    with cluster(tmp_path) as made:
-        made.add_worker("only")
-        # A ledger that is being made is there a moment before its table.
-        Ledger(path).close()
-        arguments = [str(Path(__file__).parent), str(path), made.address]
-        coordinator = subprocess.Popen([sys.executable, "-c", COORDINATE, *arguments], env=made.environment)
-        while done_count(path) < 10 and coordinator.poll() is None:
-            time.sleep(0.02)
-        coordinator.kill()
-        coordinator.wait()
-        kept = done_count(path)
-        with Ledger(path) as ledger, DaskExecutor(made.address) as executor:
-            runs = run(models.sleeps_a_moment, X, names=("a", "b"), ledger=ledger, executor=executor)
+def test_a_coordinator_that_is_killed_loses_no_run_that_its_cluster_has_made(
+    made: Cluster, here: list[tuple[Any, ...]], tmp_path: Path
+) -> None:
+    path = tmp_path / "there.sqlite"
+    made.workers(1)
+    # A ledger that is being made is there a moment before its table.
+    Ledger(path).close()
+    arguments = [str(Path(__file__).parent), str(path), made.address]
+    coordinator = subprocess.Popen([sys.executable, "-c", COORDINATE, *arguments], env=made.environment)
+    while done_count(path) < 10 and coordinator.poll() is None:
+        time.sleep(0.02)
+    coordinator.kill()
+    coordinator.wait()
+    kept = done_count(path)
+    with Ledger(path) as ledger, DaskExecutor(made.address) as executor:
+        runs = run(models.sleeps_a_moment, X, names=("a", "b"), ledger=ledger, executor=executor)
     assert 10 <= runs.reused_count == kept
     assert what_came(runs) == here
 
 
-def test_limits_hold_on_a_cluster_and_its_worker_lives_on(tmp_path: Path) -> None:
-    with cluster(tmp_path) as made:
-        # A worker under a nanny is a daemon, which may not start processes as it is.
-        made.add_worker("only", nanny=True)
-        runs = campaign(
-            tmp_path / "runs.sqlite", DaskExecutor(made.address), models.sleeps_at_ten, limits=Limits(wall_s=1.0)
-        )
+def test_limits_hold_on_a_cluster_and_its_worker_lives_on(made: Cluster, tmp_path: Path) -> None:
+    # A worker under a nanny is a daemon, which may not start processes as it is.
+    made.workers(1, nannies=True)
+    runs = campaign(
+        tmp_path / "runs.sqlite", DaskExecutor(made.address), models.sleeps_at_ten, limits=Limits(wall_s=1.0)
+    )
     assert [entry[1] for entry in runs] == ["done"] * 39 + ["failed"]
     assert runs[39][7] == "it ran longer than its limit of 1 s"
     assert all(entry.wall_s and entry.host for entry in read_records(tmp_path / "runs.sqlite"))
 
 
-def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(tmp_path: Path) -> None:
-    with cluster(tmp_path) as made:
-        made.add_worker("only")
+def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(made: Cluster, tmp_path: Path) -> None:
+    made.workers(1, nannies=True)
 
-        def lose_the_scheduler(state: Tally) -> None:
-            if state.done >= 5:
-                made.processes["scheduler"].kill()
+    def lose_the_scheduler(state: Tally) -> None:
+        if state.done >= 5:
+            made.processes["scheduler"].kill()
 
-        with pytest.raises(ConnectionError, match="every run that had ended is kept"):
-            campaign(tmp_path / "runs.sqlite", DaskExecutor(made.address), progress=lose_the_scheduler)
+    with pytest.raises(ConnectionError, match="every run that had ended is kept"):
+        campaign(tmp_path / "runs.sqlite", DaskExecutor(made.address), progress=lose_the_scheduler)
     with Ledger(tmp_path / "runs.sqlite") as ledger, LocalExecutor(1) as executor:
         runs = run(models.sleeps_a_moment, X, names=("a", "b"), ledger=ledger, executor=executor)
     assert 5 <= runs.reused_count < 40

@@ -4,17 +4,15 @@ import ast
 import csv
 import json
 import math
-import os
 import re
 import runpy
 import shlex
 import shutil
-import subprocess
 import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import redirect_stdout
+from contextlib import nullcontext, redirect_stdout
 from importlib import import_module
 from io import StringIO
 from itertools import pairwise
@@ -30,6 +28,8 @@ from typer.testing import CliRunner
 
 from lithobrake.cli import app
 from lithobrake.study import known_keys
+
+from ..quick_studies import one_process
 
 DOCS = ROOT / "docs"
 # What only the other parts use has no public names.
@@ -229,15 +229,14 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run_script(path: Path) -> tuple[str, dict[str, Any]]:
-    """What a script prints and defines, run as a reader would, without another start of Python if it has no workers."""
-    if "__main__" not in path.read_text(encoding="utf-8"):
-        with redirect_stdout(StringIO()) as printed:
-            defined = runpy.run_path(str(path), run_name="__main__")
-        return printed.getvalue(), defined
-    setting = {**os.environ, "PYTHONPATH": str(ROOT)}
-    found = subprocess.run([sys.executable, path], env=setting, capture_output=True, text=True, check=False)
-    assert found.returncode == 0, found.stderr
-    return found.stdout, {}
+    """What a script prints and defines, run as a reader would, without another start of Python.
+
+    One with a guard makes a study, by a model of its own.
+    """
+    makes_study = "__main__" in path.read_text(encoding="utf-8")
+    with one_process() if makes_study else nullcontext(), redirect_stdout(StringIO()) as printed:
+        defined = runpy.run_path(str(path), run_name="__main__")
+    return printed.getvalue(), defined
 
 
 def words(line: str) -> list[str]:

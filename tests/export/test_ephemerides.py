@@ -47,6 +47,13 @@ def seconds(segment: object, epoch: str) -> np.ndarray:
     return (np.array(times) - start) / np.timedelta64(1, "s")
 
 
+@pytest.fixture
+def no_mean(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Chosen flights are written alone."""
+    monkeypatch.setattr(ephemerides, "FEWEST", 1000)
+
+
+@pytest.mark.usefixtures("no_mean")
 @pytest.mark.parametrize("frame", ["inertial", "fixed"])
 def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_path: Path, frame: str) -> None:
     sample, epoch = int(results.flights["sample"][3]), "2026-11-22T12:00:00"
@@ -63,6 +70,7 @@ def test_a_chosen_flight_ends_where_the_study_says(results: StudyResults, tmp_pa
     assert longitude == pytest.approx(results.flights["longitude_deg"][3], abs=1e-6)
 
 
+@pytest.mark.usefixtures("no_mean")
 def test_velocities_are_those_of_the_positions(results: StudyResults, tmp_path: Path) -> None:
     """In both frames; a difference over 2 h is wrong by h^2 / 6 times the change of acceleration, some 2e-8 m/s3."""
     sample = int(results.flights["sample"][0])
@@ -130,13 +138,14 @@ def test_progress_reaches_its_end_and_large_files_are_announced(
 ) -> None:
     sample = int(results.flights["sample"][0])
     told: list[tuple[float, str]] = []
-    written(results, tmp_path, "oem", [sample], progress=lambda done, what: told.append((done, what)))
+    told_of = {"step": 200.0, "progress": lambda done, what: told.append((done, what))}
+    written(results, tmp_path, "oem", [sample], **told_of)
     assert list(dict.fromkeys(what for _, what in told)) == ["mean of all flights", "flights of the chosen samples",
         "writing flight_mean.oem", f"writing flight_{sample}.oem"]  # fmt: skip
     assert all(0.0 <= done <= 1.0 for done, _ in told)
     assert caplog.messages == []
     monkeypatch.setattr(ephemerides, "LARGE", 1000.0)
-    written(results, tmp_path, "oem", [sample])
+    written(results, tmp_path, "oem", [sample], step=200.0)
     (said,) = caplog.messages
     assert said.endswith("a longer --step makes fewer.")
     size, expected = sum(path.stat().st_size for path in tmp_path.iterdir()), float(said.split()[-7])
@@ -147,6 +156,7 @@ def test_progress_reaches_its_end_and_large_files_are_announced(
 DIMORPHOS, LANDER = 120065803, -1_000_003
 
 
+@pytest.mark.usefixtures("no_mean")
 def test_a_message_gives_back_the_states_that_were_delivered(delivered: StudyResults, tmp_path: Path) -> None:
     oem = pytest.importorskip("oem")
     written(delivered, tmp_path, "oem", [3], frame="icrf")
@@ -158,6 +168,7 @@ def test_a_message_gives_back_the_states_that_were_delivered(delivered: StudyRes
     assert found == pytest.approx(delivered_states()[3, 1:7], rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.usefixtures("no_mean")
 def test_a_message_along_icrf_delivers_the_next_study(delivered: StudyResults, tmp_path: Path) -> None:
     """What is written is what is read: the states of the first flight as those of a delivery."""
     written(delivered, tmp_path, "oem", [3], frame="icrf")

@@ -19,6 +19,7 @@ from lithobrake.smallbody import Shape, dimorphos
 from lithobrake.study import StudySource
 
 from ..few_grains import EXPANSION, ONE_IMPACT, few_grains
+from ..quick_studies import quick_studies
 
 
 def test_cells_hold_the_share_of_the_flights_that_end_in_them(results: StudyResults, tmp_path: Path) -> None:
@@ -299,7 +300,8 @@ def soil_results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """A study up to its screening runs."""
     home = tmp_path_factory.mktemp("motions")
     (home / "few.toml").write_text(STUDY)
-    run_study(StudySource.read(home / "few.toml"), home / "out", until="screening_runs", worker_count=1)
+    with quick_studies():
+        run_study(StudySource.read(home / "few.toml"), home / "out", until="screening_runs", worker_count=1)
     return open_study(home / "out")
 
 

@@ -33,9 +33,9 @@ def ball(folder: Path, run_count: int, more: str = "") -> Path:
 def grown(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, DesignRuns, str]:
     """A study of twelve runs that then had 14, and side runs: its folder, its first runs, what was said at last."""
     folder = tmp_path_factory.mktemp("grown")
-    run_study(StudySource.read(ball(folder, 12)), folder / "out", until="runs", worker_count=2)
+    run_study(StudySource.read(ball(folder, 12)), folder / "out", until="runs", worker_count=1)
     first = DesignRuns.load(StudyFolder.only_read(folder / "out"), "drawn")
-    said = said_by("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out", "--workers", 2)
+    said = said_by("run", ball(folder, 14, "side_runs = true"), "--out", folder / "out", "--workers", 1)
     assert "stage 1 of 11: landers" in said
     assert f"Report: {folder / 'out' / 'report' / 'index.html'}" in said
     return folder, first, said
@@ -78,7 +78,7 @@ def test_a_folder_whose_study_asks_for_other_runs_has_those_alone(
     shutil.copytree(grown[0] / "out", tmp_path / "out")
     study = write_ball(tmp_path / "study.toml", FEW_RUNS | FEW_SAMPLES)
     shutil.copy(study, tmp_path / "out" / "study.toml")
-    said_by("screen", study, "--out", tmp_path / "out")
+    said_by("screen", study, "--out", tmp_path / "out", "--workers", 1)
     assert (tmp_path / "out" / "designs" / "drawn.csv").is_file()
     assert set(open_study(tmp_path / "out").runs["design"]) == {"screening"}
     # A folder of an early format does not note its stages: it has no other runs.
@@ -95,7 +95,7 @@ def soil(tmp_path_factory: pytest.TempPathFactory) -> Path:
     asked = "[journey]\ntouchdowns = 1\n[design]\nrun_count = 4\nside_runs = true\n[landing]\ntime_limit = 5.0\n"
     asked += "[monte_carlo]\nsample_count = 0\n"
     (folder / "study.toml").write_text(f"{text}{asked}")
-    run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs")
+    run_study(StudySource.read(folder / "study.toml"), folder / "out", until="side_runs", worker_count=1)
     return folder
 
 
@@ -125,7 +125,7 @@ def test_the_landing_that_is_shown_is_the_run_of_the_median_speed(soil: Path, tm
     shutil.copytree(soil, tmp_path / "study")
     study, out = tmp_path / "study" / "study.toml", tmp_path / "study" / "out"
     assert "run" not in open_study(out).median_landing.attributes
-    run_study(StudySource.read(study), out, until="telling_landing")
+    run_study(StudySource.read(study), out, until="telling_landing", worker_count=1)
     runs, shown = DesignRuns.load(StudyFolder.only_read(out), "drawn"), open_study(out).median_landing
     speeds = np.sort(runs.output("speed_out")[runs.has_outputs])
     row = runs.keys.index(shown.attributes["run"])
@@ -136,9 +136,11 @@ def test_the_landing_that_is_shown_is_the_run_of_the_median_speed(soil: Path, tm
     # What was there to look at before all runs is there still, and a stopped study goes on behind it.
     assert (out / "landing.h5").is_file()
     made = (out / "telling_landing.h5").stat().st_mtime_ns
-    run_study(StudySource.read(study), out, until="telling_landing")
+    run_study(StudySource.read(study), out, until="telling_landing", worker_count=1)
     assert (out / "telling_landing.h5").stat().st_mtime_ns == made
-    run_study(StudySource.read(edit(study, {"run_count = 4": "run_count = 5"})), out, until="telling_landing")
+    run_study(
+        StudySource.read(edit(study, {"run_count = 4": "run_count = 5"})), out, until="telling_landing", worker_count=1
+    )
     assert (out / "telling_landing.h5").stat().st_mtime_ns > made
 
 

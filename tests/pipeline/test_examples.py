@@ -26,7 +26,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 @pytest.fixture(scope="module")
 def plate(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("plate") / "out"
-    ended = lithobrake("run", EXAMPLES / "ball_on_plate.toml", "--out", out, "--workers", 2)
+    ended = lithobrake("run", EXAMPLES / "ball_on_plate.toml", "--out", out, "--workers", 1)
     assert ended.returncode == 0, ended.stderr
     return out
 
@@ -77,7 +77,7 @@ def test_a_higher_order_and_more_test_runs_reuse_what_is_still_valid_and_say_so(
     # The folder goes over to the study under its new name.
     shutil.copy(tmp_path / "more.toml", plate / "study.toml")
     before = len(open_study(plate).ledger)
-    ended = lithobrake("test", tmp_path / "more.toml", "--out", plate, "--workers", 2)
+    ended = lithobrake("test", tmp_path / "more.toml", "--out", plate, "--workers", 1)
     assert ended.returncode == 0, ended.stderr
     said = " ".join(ended.stderr.split())
     # 41 nodes of the finer grid are those of the coarser one, and 44 more those of the refined design.

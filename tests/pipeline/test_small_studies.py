@@ -45,7 +45,7 @@ def what_came(records: list[Record]) -> dict[str, tuple[object, ...]]:
 def fixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study up to its test runs, in which the friction is a number."""
     folder = tmp_path_factory.mktemp("fixed")
-    said = said_by("test", write_study(folder, {FRICTION: "friction = 0.225"}), "--out", folder / "out")
+    said = said_by("test", write_study(folder, {FRICTION: "friction = 0.225"}), "--out", folder / "out", "--workers", 1)
     assert "screening" in said
     assert "reused" not in said.partition("refine")[0]
     return folder / "out"
@@ -103,7 +103,7 @@ def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str,
         "failed_share = 0.02": f"failed_share = {share}\nretry_count = 0",
     }
     study = write_study(tmp_path, changes, tmp_path / "breaks.py")
-    assert said in said_by("screen", study, "--out", tmp_path / "out", code=2)
+    assert said in said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
     assert not (tmp_path / "out" / "screening.json").exists()
 
 
@@ -121,12 +121,14 @@ def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(
 
 def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path) -> None:
     study = write_study(tmp_path, {})
-    command = [sys.executable, "-m", "lithobrake", "screen", str(study), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-m", "lithobrake", "screen", str(study), "--out", str(tmp_path / "out"),
+        "--workers", "1"]  # fmt: skip
     with subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as first:
         while not (tmp_path / "out" / "study.toml").is_file():
+            assert first.poll() is None
             time.sleep(0.01)
         os.kill(first.pid, signal.SIGSTOP)
-        said = said_by("screen", study, "--out", tmp_path / "out", code=2)
+        said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
         told = lithobrake("status", tmp_path / "out").stdout
         os.kill(first.pid, signal.SIGCONT)
     assert f"another lithobrake is at work in {tmp_path / 'out'} (process {first.pid} on " in said

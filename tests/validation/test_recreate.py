@@ -100,7 +100,7 @@ def test_every_case_of_the_repository_has_its_script() -> None:
 SMALL = [
     (["pair_tests"], 1e-6),
     (["plate_into_loose_grains", "--rows", "16"], 0.2),
-    (["settling_in_other_gravities", "--rows", "7"], 0.2),
+    (["grain_on_its_own_kind", "--rows", "129"], 0.2),
 ]
 
 
