@@ -1,21 +1,63 @@
-"""Studies that take less time at what the tests of their results do not look at: validation of emulators, pictures."""
+"""Studies that take less time at what the tests of their results do not look at: validation of emulators, pictures,
+processes.
+"""
 
-from collections.abc import Iterator
+import pickle
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager
+from typing import Any
 
 import pytest
 
+from lithobrake.campaign import LocalExecutor, executors
+from lithobrake.campaign.single_run import Limits
+from lithobrake.campaign.worker import pickled
 from lithobrake.emulator import validation
+from lithobrake.pipeline import study_run
+from lithobrake.pipeline.commands import rare_landings, site_maps
 from lithobrake.report.figures.style import STYLE
+
+
+class OwnProcess(LocalExecutor):
+    """A pool whose only worker, where it has one and no limit to keep, is this process: another would import for
+    seconds what it makes runs with for milliseconds.
+    """
+
+    def submit_limited(
+        self, limits: Limits, function: Callable[..., Any], /, *args: Any, **kwargs: Any
+    ) -> "Future[Any]":
+        """Make a call here and now, of what a process of its own would be sent."""
+        if self.worker_count > 1 or limits != Limits():
+            return super().submit_limited(limits, function, *args, **kwargs)
+        future = Future[Any]()
+        future.set_running_or_notify_cancel()
+        function, args, kwargs = pickle.loads(pickled("a call", (function, args, kwargs)))
+        try:
+            future.set_result(pickle.loads(pickle.dumps(function(*args, **kwargs))))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+@contextmanager
+def one_process() -> Iterator[None]:
+    """Quick studies that have one worker where none are asked for, as on a machine of one core."""
+    with quick_studies(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(executors, "available_cores", lambda: 1)
+        yield
 
 
 @contextmanager
 def quick_studies() -> Iterator[None]:
-    """Emulators are fitted anew without each quarter of the beds, and not without each bed; pictures are coarse.
+    """Emulators are fitted anew without each quarter of the beds, and not without each bed; pictures are coarse; a
+    study of one worker makes its runs in this process.
 
-    What an emulator is worth is tested in tests/emulator, and how pages look in tests/report.
+    What an emulator is worth is tested in tests/emulator, how pages look in tests/report, processes in tests/campaign.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(validation, "MOST_FOLDS", 4)
         patch.setitem(STYLE, "savefig.dpi", 50)
+        for module in (study_run, rare_landings, site_maps):
+            patch.setattr(module, "LocalExecutor", OwnProcess)
         yield
