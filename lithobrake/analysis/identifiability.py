@@ -4,12 +4,15 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import logsumexp
 
 from lithobrake.analysis.bayesian_inference import Bounds, Posterior, posterior_of
 from lithobrake.analysis.posterior import Observation, completed_points
 from lithobrake.chaos import sobol_sequence
 from lithobrake.chaos.design import sample_inputs
+from lithobrake.chaos.training_data import one_thread
+from lithobrake.emulator.density import BedEffect, observed_density
 from lithobrake.emulator.model import Emulator
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import random_numbers, whole_number
@@ -111,6 +114,7 @@ def identifiability(
     }
 
 
+@one_thread()
 def _likelihoods(
     model: Emulator,
     truth: Array,
@@ -129,21 +133,27 @@ def _likelihoods(
         given = dict(zip((name for name in inputs if name not in own), shared.T, strict=True))
         return completed_points(inputs, given, len(shared), 7919 * seed + offset)
 
+    def looked_at(offset: int) -> tuple[Array, tuple[ArrayLike | None, ArrayLike | None]]:
+        x = with_own(points, offset)
+        return model.terms.matrix(x), bounds(x) if bounds else (None, None)
+
     at = with_own(np.tile(truth, (MOST_BOUNCES, 1)), 0)
     low, high = bounds(at) if bounds else (None, None)
     drawn = model.draw(at, 1, seed, lower=low, upper=high)
-    found = np.empty((MOST_BOUNCES, len(points)))
+    found, alone = np.empty((MOST_BOUNCES, len(points))), BedEffect.none(len(model.runs.modelled))
+    terms, ends = looked_at(1)
     for number in range(MOST_BOUNCES):
-        x = with_own(points, 1 + number)
-        low, high = bounds(x) if bounds else (None, None)
+        # Bounces that draw nothing of their own are all looked at from the same points.
+        if own and number:
+            terms, ends = looked_at(1 + number)
         ended = int(drawn.outcome[number, 0])
         y = drawn.y[number, 0, [model.output_names.index(name) for name in names]]
         if ended == model.runs.output_outcome:
             blurred = y + random.standard_normal(len(names)) * [errors.get(name, 0.0) for name in names]
             seen = dict(zip(names, blurred.tolist(), strict=True))
-            found[number] = model.log_density(seen, x, errors=errors, lower=low, upper=high)
+            found[number] = observed_density(model, seen, terms, errors, None, ends, alone)[0]
         else:
-            found[number] = model.log_density({}, x, outcome=model.outcome_names[ended])
+            found[number] = observed_density(model, {}, terms, {}, model.outcome_names[ended], ends, alone)[0]
     return found
 
 

@@ -4,6 +4,7 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -174,11 +175,15 @@ class InferredStudy:
         lower, upper = np.tile(runs.lower[0], (len(x), 1)), np.tile(runs.upper[0], (len(x), 1))
         speed, spin = (self.model.output_names.index(name) for name in (SPEED, SPIN))
         if np.isfinite(upper[0, speed]):
-            design = DrawnDesign(self.study)
-            height, across = height_of_beds(self.study, self.folder), across_of(self.study, self.folder)
+            design, height, across = self._ground
             bound = energy_bound(design, height, dict(zip(runs.inputs, x.T, strict=True)), len(x), across)
             upper[:, speed], upper[:, spin] = bound.speed, bound.spin()
         return lower, upper
+
+    @cached_property
+    def _ground(self) -> tuple[DrawnDesign, float, float | None]:
+        """The design, the height of the highest bed and the longest way of a touchdown [m], None where none is told."""
+        return DrawnDesign(self.study), height_of_beds(self.study, self.folder), across_of(self.study, self.folder)
 
     def plan(self) -> ExpectedInference:
         """What bounces of which all outputs are seen would say."""

@@ -211,10 +211,10 @@ class DrawnLandings:
         return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
 
 
-def write_explorer(job: Job) -> None:
+def write_explorer(job: Job, models: "Sequence[Emulator]") -> None:
     height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
     bound = bound_numbers(job.design, height, across)
-    save_explorer(job.folder / EXPLORER_FILE, tables_of_refits(refits(job), bound))
+    save_explorer(job.folder / EXPLORER_FILE, tables_of_refits(models, bound))
 
 
 def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -> ExplorerTables:
@@ -268,17 +268,17 @@ def draw_emulator_samples(job: Job) -> None:
         x = np.clip(inputs_of(rows, list(laws)), *ends.T)
     else:
         x = sample_inputs(design.inputs, study.sample_count, hashed_seed(study.seed, "samples"))
-    drawn_samples(job, x, "draws").save(job.folder)
-    write_explorer(job)
+    models = refits(job)
+    drawn_samples(job, models, x, "draws").save(job.folder)
+    write_explorer(job, models)
 
 
-def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
-    """Draw a landing at each x [sample_count, input_count]; sample i by refit i modulo that.
+def drawn_samples(job: Job, models: "Sequence[Emulator]", x: np.ndarray, purpose: str) -> Samples:
+    """Draw a landing at each x [sample_count, input_count]; sample i by the model of i modulo their number.
 
     purpose: of the random numbers.
     """
-    study, models = job.study, refits(job)
-    inputs = list(models[0].runs.inputs)
+    study, inputs = job.study, list(models[0].runs.inputs)
     height, across = height_of_beds(study, job.folder), across_of(study, job.folder)
     bound = energy_bound(job.design, height, dict(zip(inputs, x.T, strict=True)), len(x), across)
     names: list[str] = []
@@ -286,7 +286,7 @@ def drawn_samples(job: Job, x: np.ndarray, purpose: str) -> Samples:
     for number, model in enumerate(models):
         job.progress(number, len(models), "samples")
         # Interleaved, so that the first samples, which are flown, are of all refits.
-        part = slice(number, None, REFIT_COUNT)
+        part = slice(number, None, len(models))
         drawn = DrawnLandings.of(model, x[part], bound.at(part), hashed_seed(study.seed, purpose, number))
         table = drawn.table()
         if not names:

@@ -1,14 +1,19 @@
 """Limit states of a drawn study, from its file to its report, against what is known of the synthetic landings."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import lithobrake
+from lithobrake.pipeline.answer.question_answers import limit_state_results
+from lithobrake.pipeline.site import Site
+from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values
+from lithobrake.study import check_tables
 
 from ...synthetic_landings import OUTPUT_NAMES, WEAK, random_soils
 from ..synthetic_lander import SyntheticLander, synthetic_tables
@@ -24,7 +29,7 @@ CONDITIONS = {
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """A study of 150 landings, to its page."""
-    tables = synthetic_tables(design={"run_count": 150}, limit_states=CONDITIONS)
+    tables = synthetic_tables(design={"run_count": 150}, hard_ground={"count": 0}, limit_states=CONDITIONS)
     return lithobrake.run(tables, tmp_path_factory.mktemp("limits") / "out", workers=1, model=SyntheticLander())
 
 
@@ -85,15 +90,17 @@ def test_every_key_is_described_and_the_page_has_the_sentences(results: StudyRes
 
 
 def test_one_bed_has_no_interval_and_says_why(tmp_path: Path) -> None:
-    few: dict[str, dict[str, Any]] = {"design": {"run_count": 30}, "monte_carlo": {"sample_count": 400}}
-    tables = synthetic_tables(**few, bed={"bed_count": 1}, limit_states={"fast": "speed_out > 0.1"})
+    few = {"design": {"run_count": 30}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 50}}
+    changes = {"bed": {"bed_count": 1}, "hard_ground": {"count": 0}, "limit_states": {"fast": "speed_out > 0.1"}}
+    tables = synthetic_tables(**few, **changes)
     results = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
     state = results.summary["results"]["limit_states"]["fast"]
     assert (state["lower"], state["upper"], state["source"], state["inputs"]) == (None, None, "runs", {})
     assert "on one bed" in state["why"]
 
 
-def test_an_output_that_no_run_has_is_refused(tmp_path: Path) -> None:
-    tables = synthetic_tables(design={"run_count": 30}, limit_states={"hard": "peak_acceleration > 50"})
+def test_an_output_that_no_run_has_is_refused(results: StudyResults) -> None:
+    study = check_tables(synthetic_tables(limit_states={"hard": "peak_acceleration > 50"}), Path())
+    job: Any = SimpleNamespace(study=study, folder=StudyFolder.only_read(results.folder), site=Site(study))
     with pytest.raises(ValueError, match=r"limit_states\.hard uses peak_acceleration, which no run has"):
-        lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
+        limit_state_results(job, {})

@@ -14,9 +14,10 @@ import pytest
 from scipy import stats
 from typer.testing import CliRunner
 
-from lithobrake.campaign import Record, read_records
+from lithobrake.campaign import LocalExecutor, Record, read_records
 from lithobrake.cli import app
 from lithobrake.pipeline import OneJourney, follow_one, land_one, landing_inputs, rare_failure, run_study
+from lithobrake.pipeline.commands import rare_landings
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.runs.solver import function_identity
@@ -358,8 +359,11 @@ def test_one_that_is_stopped_ends_with_the_same_bits_and_makes_no_landing_twice(
     def ended() -> dict[str, Record]:
         return {one.key: one for one in open_study(tmp_path / "out").ledger if one.ended}
 
-    with pytest.raises(StoppedError):
-        rare(tmp_path / "out", shown=Stopping(300))
+    with pytest.MonkeyPatch.context() as patch:
+        # Landings that come in one by one, from a process of their own.
+        patch.setattr(rare_landings, "LocalExecutor", LocalExecutor)
+        with pytest.raises(StoppedError):
+            rare(tmp_path / "out", shown=Stopping(300))
     before, shown = ended(), Stopping(-1)
     found = rare(tmp_path / "out", shown=shown)
     assert 200 < len(before) < found["landings"]

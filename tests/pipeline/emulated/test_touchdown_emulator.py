@@ -4,6 +4,7 @@ import dataclasses
 import json
 import math
 import shutil
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy, infer_study, read_bounces
 from lithobrake.pipeline.journeys.delivery_options import option_arrivals
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS
+from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.report import write_report
 from lithobrake.results import StudyResults
@@ -47,8 +49,10 @@ COUNT = TABLES["journey"]["emulated_count"]
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+def results(journeys_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """The study of the journeys, which is then asked for delivery options as well."""
     folder = tmp_path_factory.mktemp("emulated") / "study"
+    shutil.copytree(journeys_folder, folder)
     return lithobrake.run(journey_tables(aim=AIM), folder, workers=1, model=bounce, report=False)
 
 
@@ -217,10 +221,21 @@ def test_a_limit_of_another_method_is_refused() -> None:
 
 
 def test_the_same_study_gives_the_same_landers(results: StudyResults, tmp_path: Path) -> None:
+    shutil.copytree(results.folder, tmp_path / "again")
+    for name in ("touchdown_emulator.json", "emulated.csv", "aim.csv"):
+        (tmp_path / "again" / name).unlink()
     again = lithobrake.run(journey_tables(aim=AIM), tmp_path / "again", workers=1, model=bounce, report=False)
     for name in ("emulated.csv", "aim.csv"):
         assert (again.folder / name).read_bytes() == (results.folder / name).read_bytes()
     assert dataclasses.asdict(again.results)["emulated"] == dataclasses.asdict(results.results)["emulated"]
+
+
+@pytest.fixture(autouse=True)
+def few_bounces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What bounces say is worked out for fewer of them, at fewer points; tests/analysis looks at the numbers."""
+    module = import_module("lithobrake.analysis.identifiability")
+    for name, few in (("MOST_BOUNCES", 8), ("PRIOR_POINTS", 512), ("REPLICATES", 50)):
+        monkeypatch.setattr(module, name, few)
 
 
 SEEN = "speed_out [m/s],elevation_out [rad],error:speed_out [m/s],outcome\n0.12,0.5,0.002,\n,,,captured\n"
@@ -229,9 +244,9 @@ SEEN = "speed_out [m/s],elevation_out [rad],error:speed_out [m/s],outcome\n0.12,
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study of 96 landings whose soil counts."""
-    few = {"design": {"run_count": 96}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 50}}
-    out = tmp_path_factory.mktemp("infer") / "out"
-    lithobrake.run(synthetic_tables(**few), out, workers=1, model=SyntheticLander(STRONG), report=False)
+    out, model = tmp_path_factory.mktemp("infer") / "out", SyntheticLander(STRONG)
+    source = StudySource.of_tables(synthetic_tables(design={"run_count": 96}), function_identity(model))
+    run_study(source, out, until="emulator", worker_count=1, model=model)
     return out
 
 

@@ -138,7 +138,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scatter")
     (folder / "program.py").write_text(PROGRAM)
     (folder / "study.toml").write_text(STUDY.replace("PYTHON", f"{sys.executable} -S"))
-    ended = command("run", folder / "study.toml", "--out", folder / "out", "--workers", 2)
+    ended = command("run", folder / "study.toml", "--out", folder / "out", "--workers", 1)
     assert ended.returncode == 0, ended.stderr
     return folder / "out"
 
@@ -235,7 +235,8 @@ def land(values: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def tables() -> dict[str, Any]:
-    return synthetic_tables(design={"run_count": 0}, expansion=TWO_STEPS, monte_carlo={"scatter": True}, **UNCERTAIN)
+    changes = {"design": {"run_count": 0}, "monte_carlo": {"scatter": True}, "hard_ground": {"count": 0}}
+    return synthetic_tables(expansion=TWO_STEPS, **changes, **UNCERTAIN)
 
 
 @pytest.fixture(scope="module")

@@ -207,7 +207,8 @@ def test_status_counts_what_the_ledger_has_while_journeys_are_followed(journeys:
 def test_status_counts_no_touchdown_of_an_earlier_delivery(journeys: StudyResults, tmp_path: Path) -> None:
     folder = tmp_path / "edited"
     shutil.copytree(journeys.folder, folder)
-    made = run_without_emulator(journey_tables(delivery={"incidence_deg": 25.0}), folder).touchdowns.row_count
+    edited = journey_tables(delivery={"incidence_deg": 25.0}, journey={"count": 12})
+    made = run_without_emulator(edited, folder).touchdowns.row_count
     for name in TABLES:
         (folder / name).unlink()
     found = study_status(folder).runs
@@ -221,15 +222,15 @@ class Looks(Silent):
         self.folder, self.told, self.seen = folder, "", list[str]()
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        if what == "journeys" and done >= 24 and not self.seen:
+        if what == "journeys" and done >= 12 and not self.seen:
             self.told, self.seen = detail.splitlines()[0], study_status(self.folder).lines()
 
 
 def test_status_says_how_far_the_process_is_that_follows_journeys(tmp_path: Path) -> None:
     looks = Looks(tmp_path / "out")
-    source = StudySource.of_tables(journey_tables(), function_identity(bounce))
+    source = StudySource.of_tables(journey_tables(journey={"count": 24}), function_identity(bounce))
     run_study(source, looks.folder, until="runs", worker_count=1, model=bounce, shown=looks)
-    assert re.fullmatch(r"(2[4-9]|3\d) of 48 journeys, \d+ touchdowns, at rest so far \d+ \+- \d+ %", looks.told)
+    assert re.fullmatch(r"1[2-9] of 24 journeys, \d+ touchdowns, at rest so far \d+ \+- \d+ %", looks.told)
     assert looks.told in looks.seen
 
 
@@ -247,12 +248,11 @@ def test_a_bar_of_lengths_is_a_round_one(most: float, length: float) -> None:
 
 
 @needs_browser
-def test_the_page_takes_three_sheets_of_paper_at_most(journeys_folder: Path, tmp_path: Path) -> None:
-    path = write_report(journeys_folder)
-    with browser_page(tmp_path) as page:
-        page.open(path, 1280)
-        assert 2 <= page.sheets() <= 3
-        assert page.complaints == []
+def test_the_page_takes_three_sheets_of_paper_at_most(page: Path, tmp_path: Path) -> None:
+    with browser_page(tmp_path) as browser:
+        browser.open(page, 1280)
+        assert 2 <= browser.sheets() <= 3
+        assert browser.complaints == []
 
 
 SCRIPTS = ("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js")
@@ -262,11 +262,12 @@ SHARE = "document.querySelector('#touchdown-explorer .share').textContent"
 PHONE = 390
 
 
-@pytest.fixture
-def model(journeys: StudyResults, monkeypatch: pytest.MonkeyPatch) -> TouchdownEmulator:
-    # A function has no beds.
-    monkeypatch.setattr("lithobrake.pipeline.journeys.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
-    return TouchdownEmulator.read(DrawnDesign(check_tables(journey_tables(), Path())), StudyFolder(journeys.folder))
+@pytest.fixture(scope="module")
+def model(journeys_folder: Path) -> TouchdownEmulator:
+    with pytest.MonkeyPatch.context() as patch:
+        # A function has no beds.
+        patch.setattr("lithobrake.pipeline.journeys.touchdown_emulator.height_of_beds", lambda study, folder: 0.0)
+        return TouchdownEmulator.read(DrawnDesign(check_tables(journey_tables(), Path())), StudyFolder(journeys_folder))
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Kill -9 of the coordinator, of a worker, of both, amid journeys on soil; and a Dask cluster that loses a worker.
+"""Kill -9 of a worker, and of the coordinator and a worker, amid journeys on soil; a Dask cluster that loses a worker.
 
 The body of the study rolls, and its page is made.
 """
@@ -24,11 +24,12 @@ from lithobrake.smallbody import fly
 from lithobrake.study import StudySource, read_study
 
 from ...campaign.dask_cluster import Cluster, cluster
-from ..killed_studies import VICTIMS, kill, ledger, start
+from ..killed_studies import kill, ledger, start
 from .soil_journeys import STUDY
 
-# Touchdowns that the ledger has when something is killed; there are 14 in all.
-MOMENTS = (2, 7)
+# What is killed when the ledger has so many touchdowns; there are 14 in all. That a study goes on alike after its
+# coordinator alone was killed, at any stage, tests/pipeline/test_killed.py shows.
+KILLED = {2: "worker", 7: "both"}
 WORKERS = 2
 ROLLING = STUDY.replace("\nsite = { ", "\nsite = { rotation = { yaw_deg = 30.0, roll_deg = 60.0 }, ").replace(
     "count = 6", "count = 3"
@@ -40,10 +41,10 @@ pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processe
 
 @pytest.fixture(scope="module")
 def calm(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of the study, never killed."""
+    """The folder of the study, never killed, whose touchdowns are made one after the other."""
     folder = tmp_path_factory.mktemp("calm")
     (folder / "soil.toml").write_text(ROLLING)
-    return lithobrake.run(folder / "soil.toml", folder / "out", workers=WORKERS, report=False).folder
+    return lithobrake.run(folder / "soil.toml", folder / "out", workers=1, report=False).folder
 
 
 @pytest.fixture
@@ -76,19 +77,15 @@ def assert_same(out: Path, calm: Path) -> None:
 def test_journeys_that_are_killed_end_with_the_same_bits(calm: Path, begun: Path) -> None:
     study, chance = begun.parent / "soil.toml", random.Random(3)
     process = start(study, begun, WORKERS)
-    before: dict[str, str | None] = {}
-    for number, moment in enumerate(MOMENTS):
+    for moment, victim in KILLED.items():
         wait_for_touchdowns(process, begun, moment)
-        kill(process, VICTIMS[2 - number], chance)
-        if process.exitcode is None:
-            continue
-        records, before = read_records(begun / "runs.sqlite"), ended(begun)
-        assert len(before) >= moment
-        # What was in progress is all that is lost.
-        assert sum(one.status == RunStatus.RUNNING for one in records) <= WORKERS
-        process = start(study, begun, WORKERS)
-    kill(process, "coordinator", chance)
-    lithobrake.run(study, begun, workers=1, report=False)
+        kill(process, victim, chance)
+    assert process.exitcode is not None
+    records, before = read_records(begun / "runs.sqlite"), ended(begun)
+    assert len(before) >= max(KILLED)
+    # What was in progress is all that is lost.
+    assert sum(one.status == RunStatus.RUNNING for one in records) <= WORKERS
+    run_study(StudySource.read(study), begun, until="fly_runs", worker_count=1)
     assert before.items() <= ended(begun).items()
     assert_same(begun, calm)
 
@@ -100,7 +97,7 @@ class Loses(Silent):
         self.worker, self.out = cluster.processes["first"], out
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
-        if what == "journeys" and self.worker.poll() is None and len(ended(self.out)) >= MOMENTS[0]:
+        if what == "journeys" and self.worker.poll() is None and len(ended(self.out)) >= min(KILLED):
             self.worker.kill()
             self.worker.wait()
 
@@ -111,7 +108,7 @@ def test_journeys_on_a_cluster_that_loses_a_worker_end_with_the_same_bits(calm: 
         made.add_worker("first")
         made.add_worker("second")
         source, shown = StudySource.read(begun.parent / "soil.toml"), Loses(made, begun)
-        run_study(source, begun, until="summary", scheduler=made.address, shown=shown)
+        run_study(source, begun, until="fly_runs", scheduler=made.address, shown=shown)
         assert shown.worker.poll() is not None
     assert_same(begun, calm)
 

@@ -10,9 +10,12 @@ import pytest
 import lithobrake
 from lithobrake.pipeline.answer.run_estimates import PARTS
 from lithobrake.pipeline.job import Silent
+from lithobrake.pipeline.runs.solver import function_identity
+from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values
 from lithobrake.smallbody import RestitutionTable
+from lithobrake.study import StudySource
 
 from ...synthetic_landings import WEAK
 from ..synthetic_lander import SyntheticLander, synthetic_tables
@@ -23,11 +26,13 @@ ARRIVAL = {
 }
 # All first touchdowns on level ground, where no lander gains speed.
 FLAT = {"gravity": 5e-5}
-FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 400}, "flight": {"flight_count": 200}}
+FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 50}}
+NO_HARD_GROUND = {"count": 0}
 
 
 def made(folder: Path, model: SyntheticLander, **changes: dict[str, Any]) -> StudyResults:
-    return lithobrake.run(synthetic_tables(**FEW, **changes), folder, workers=1, model=model, report=False)
+    tables = synthetic_tables(**FEW | {"hard_ground": NO_HARD_GROUND} | changes)
+    return lithobrake.run(tables, folder, workers=1, model=model, report=False)
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +41,8 @@ def journeys(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
     site, hard = {"latitude_deg": 70.0}, {"count": 100}
     folder = tmp_path_factory.mktemp("journeys") / "out"
-    return made(folder, model, impact=ARRIVAL, site=site, surface=FLAT, hard_ground=hard)
+    changes = {"impact": ARRIVAL, "site": site, "surface": FLAT, "hard_ground": hard}
+    return made(folder, model, monte_carlo={"sample_count": 400}, **changes)
 
 
 def test_landers_rest_on_hard_ground_and_their_shares_have_the_error_of_their_number(journeys: StudyResults) -> None:
@@ -97,10 +103,17 @@ def test_landers_on_equivalent_ground_stand_beside_hard_ground(journeys: StudyRe
     assert json_values(journeys.results) == journeys.summary["results"]
 
 
-def test_a_study_of_one_speed_has_no_table(tmp_path: Path) -> None:
-    results = made(tmp_path / "out", SyntheticLander(), hard_ground={"count": 20})
-    assert not (results.folder / "restitution.csv").exists()
-    assert set(results.results.hard_ground) == {"hard"}
+@pytest.fixture(scope="module")
+def rim(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+    """Landers of one speed, of which the fast and flat leave over the rim."""
+    model = SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat"))
+    limits = {"away": "escaped", "back": "returns", "caught": "captured"}
+    return made(tmp_path_factory.mktemp("rim") / "out", model, limit_states=limits, hard_ground={"count": 20})
+
+
+def test_a_study_of_one_speed_has_no_table(rim: StudyResults) -> None:
+    assert not (rim.folder / "restitution.csv").exists()
+    assert set(rim.results.hard_ground) == {"hard"}
 
 
 @pytest.mark.parametrize(("changes", "words"), [
@@ -108,7 +121,7 @@ def test_a_study_of_one_speed_has_no_table(tmp_path: Path) -> None:
     ({"impact": {"region": None, "place": {"x": 0.0, "y": 0.0}}}, "All runs landed at one impact point."),
 ], ids=["one bed", "one place"])  # fmt: skip
 def test_one_bed_or_one_place_gives_no_interval(changes: dict[str, dict[str, Any]], words: str, tmp_path: Path) -> None:
-    results = made(tmp_path / "out", SyntheticLander(), **changes)
+    results = made(tmp_path / "out", SyntheticLander(), design={"run_count": 24}, **changes)
     found = results.summary["results"]
     returns = found["returns"]
     assert (returns["lower"], returns["upper"], returns["next_bed"]) == (None, None, None)
@@ -120,10 +133,8 @@ def test_one_bed_or_one_place_gives_no_interval(changes: dict[str, dict[str, Any
     assert found["outputs"]["speed_out"]["mean"]["lower"] is None
 
 
-def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: Path) -> None:
-    limits = {"away": "escaped", "back": "returns", "caught": "captured"}
-    results = made(tmp_path / "out", SyntheticLander(dataclasses.replace(WEAK, rim="fast_flat")), limit_states=limits)
-    found = results.summary["results"]
+def test_landings_without_an_outcome_are_named_and_widen_the_interval(rim: StudyResults) -> None:
+    found = rim.summary["results"]
     runs, returns, shares = found["runs"], found["returns"], found["shares"]
     lost = runs["outcomes"]["left_sideways"]
     assert runs["missing"] == {"count": lost, "share": lost / 48, "outcomes": {"left_sideways": lost}}
@@ -132,7 +143,7 @@ def test_landings_without_an_outcome_are_named_and_widen_the_interval(tmp_path: 
     low, high = returns["if_missing"]
     assert returns["lower"] < low < returns["share"] < high < returns["upper"]
     assert returns["missing"] == shares["missing"]["share"] == lost / 48
-    assert any(f"{lost} of 48 landings have no outcome" in sentence for sentence in results.headline)
+    assert any(f"{lost} of 48 landings have no outcome" in sentence for sentence in rim.headline)
     # Whatever describes fewer than all landings says which.
     left = f"the {48 - lost - runs['outcomes']['captured']} of 48 landings that left the surface"
     assert found["outputs"]["speed_out"]["of"] == found["variance_shares"]["speed_out"]["of"] == left
@@ -158,9 +169,9 @@ def test_runs_with_more_energy_than_they_brought_leave_the_speed_without_a_bound
         def say(self, sentence: str) -> None:
             said.append(sentence)
 
-    tables = synthetic_tables(**FEW, impact={"speed": 0.05})
-    results = lithobrake.run(
-        tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False, progress=Shown()
-    )
+    model = SyntheticLander()
+    source = StudySource.of_tables(synthetic_tables(**FEW, impact={"speed": 0.05}), function_identity(model))
+    run_study(source, tmp_path / "out", until="sample", worker_count=1, model=model, shown=Shown())
+    results = lithobrake.open_study(tmp_path / "out")
     assert any("with more speed and spin than the impact energy allows" in sentence for sentence in said)
     assert results.samples.where(results.samples["outcome"] == "clear")["speed_out"].max() > 0.05
