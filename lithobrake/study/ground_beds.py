@@ -45,9 +45,11 @@ class BedGround(NamedTuple):
     weights: tuple[float, ...] = ()
 
 
-def grounds(study: Study) -> list[BedGround]:
-    """The ground of each bed, by its number; another number of beds changes none. Empty without [ground]."""
-    return [] if study.ground is None else _draw(study, 0, study.bed_count)
+def grounds(study: Study, count: int | None = None) -> list[BedGround]:
+    """The ground of each of so many beds, of those of the study without a count, by its number; another number of beds
+    changes none. Empty without [ground].
+    """
+    return [] if study.ground is None else _draw(study, 0, study.bed_count if count is None else count)
 
 
 def _draw(study: Study, first: int, count: int) -> list[BedGround]:

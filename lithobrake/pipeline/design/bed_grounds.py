@@ -24,16 +24,17 @@ if TYPE_CHECKING:
 class BedGrounds:
     """The grounds of a study; nothing is drawn, met or changed where its file has no [ground].
 
-    inputs: the uncertain inputs of its touchdowns with their laws.
+    inputs: the uncertain inputs of its touchdowns with their laws. bed_count: that there are.
     """
 
     site: Site
     inputs: "Mapping[str, Distribution]"
+    bed_count: int
 
     @cached_property
     def each(self) -> list[BedGround]:
         """The ground of each bed, by its number; empty where all beds have one."""
-        return grounds(self.site.study)
+        return grounds(self.site.study, self.bed_count)
 
     def of(self, bed: int, row: Row) -> Row:
         """What a touchdown reads of the ground of a bed; row: with the numbers of [grain] that its lander drew."""

@@ -66,11 +66,13 @@ class DrawnDesign:
     """The runs that a study draws, made once for it; each property is worked out when it is first asked for.
 
     A study that draws no lander takes site, inputs, medians and region alone from it.
-    known_site: of the same study with another number of runs.
+    known_site: of the same study with another number of runs. known_beds: that there are; None where each run has the
+    bed that it has in a study of so many runs.
     """
 
     study: Study
     known_site: Site | None = None
+    known_beds: int | None = None
 
     @cached_property
     def site(self) -> Site:
@@ -128,7 +130,8 @@ class DrawnDesign:
 
     @cached_property
     def beds(self) -> list[int]:
-        return beds_of_runs(self.study, self.study.design.run_count)
+        beds = beds_of_runs(self.study, self.study.design.run_count)
+        return beds if self.known_beds is None else [bed % self.known_beds for bed in beds]
 
     @cached_property
     def rows(self) -> list[Row]:
@@ -231,6 +234,10 @@ class DrawnDesign:
         """The design of the same study with so many runs, which has all runs of one with fewer."""
         return DrawnDesign(self.study.with_run_count(count), self.site)
 
+    def on_known_beds(self, count: int) -> "DrawnDesign":
+        """The design of the same study with so many runs, of which those behind the study's lie on its beds."""
+        return DrawnDesign(self.study.with_run_count(count), self.site, self.study.bed_count)
+
     def _points(self, count: int, skip: int = 0) -> np.ndarray:
         """Points of the sequence, [count, coordinate_count]."""
         from lithobrake.chaos import sobol_sequence
@@ -244,7 +251,7 @@ class DrawnDesign:
     @cached_property
     def grounds(self) -> BedGrounds:
         """The ground of each bed."""
-        return BedGrounds(self.site, self.inputs)
+        return BedGrounds(self.site, self.inputs, self.known_beds or self.study.bed_count)
 
     def _rows_of_points(self, beds: Sequence[int], x: np.ndarray) -> list[Row]:
         """The same on the ground of [grain]."""

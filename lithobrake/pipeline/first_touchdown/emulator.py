@@ -261,7 +261,7 @@ def draw_emulator_samples(job: Job) -> None:
     if design.met_on_the_way:
         # Of landers behind those of the study: what these meet follows from where they come down.
         first = len(design.beds)
-        rows = design.with_run_count(first + study.sample_count).rows[len(design.rows) :]
+        rows = design.on_known_beds(first + study.sample_count).rows[len(design.rows) :]
         laws = inputs_met(design, DesignRuns.load(job.folder, "drawn"))
         ends = np.array([law.support for law in laws.values()])
         # An arrival that no run had is as the nearest that one had.

@@ -49,8 +49,8 @@ class Arrivals:
 
     @classmethod
     def drawn(cls, design: DrawnDesign, first: int, count: int) -> "Arrivals":
-        """Journeys of a study from the number `first` on."""
-        return cls.of_rows(design.site, design.with_run_count(first + count).rows[first:], first)
+        """Journeys from the number `first` on, also behind those of the study, on the beds of the study."""
+        return cls.of_rows(design.site, design.on_known_beds(first + count).rows[first:], first)
 
     @classmethod
     def of_descents(cls, descents: Descents, rows: list[Row], beds: list[int]) -> "Arrivals":

@@ -151,3 +151,19 @@ def test_a_landing_on_another_bed_has_the_ground_of_that_bed() -> None:
 def test_what_holds_for_one_ground_alone_is_refused_over_several(found: StudyResults) -> None:
     with pytest.raises(ValueError, match=r"has \[ground\], and bounces tell the soil of one ground"):
         InferredStudy.open(found.folder)
+
+
+def test_landers_of_the_emulator_have_the_grounds_of_the_beds_that_there_are() -> None:
+    """A study of more landers would have more beds where its file does not count them; these were never poured."""
+    found = tables()
+    del found["bed"]["bed_count"]
+    design = DrawnDesign(check_tables(found, QUICK.parent))
+    count = design.study.bed_count
+    more = design.on_known_beds(400)
+    assert design.with_run_count(400).study.bed_count > count
+    assert {int(row["bed"]) for row in more.rows} == set(range(count))
+    assert more.rows[:72] == design.rows
+    assert all(row[GROUND_SIZE] == design.grounds.each[int(row["bed"])].size for row in more.rows)
+    # A study that goes on until its interval is met has all beds of its landers.
+    longer = design.with_run_count(400)
+    assert {int(row["bed"]) for row in longer.rows} == set(range(longer.study.bed_count))
