@@ -73,7 +73,8 @@ def outside(shapes: Library, shape: Integers, point: Floats) -> Floats:
 
 def check_points(shapes: Library, meshes: Meshes, pairs: Poses, size: Floats) -> Result:
     answer = closest(shapes, pairs)
-    claimed, normal, n = answer[:, DISTANCE], answer[:, NORMAL], len(answer)
+    # Contiguous, as for names: `expect` is compiled once.
+    claimed, normal, n = answer[:, DISTANCE], answer[:, NORMAL].copy(), len(answer)
     expected, gap = np.zeros(n), np.zeros(n)
     expect(meshes, *pairs, normal, expected, gap)
     between, apart = answer[:, SECOND] - answer[:, FIRST], pairs.position[:, 1] - pairs.position[:, 0]

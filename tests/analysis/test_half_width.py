@@ -93,19 +93,19 @@ def test_the_best_number_of_runs_a_bed_costs_least() -> None:
 
 
 def test_a_third_of_the_runs_says_what_all_of_them_give() -> None:
-    """25 studies of 60 runs on 15 beds that are correlated by 0.05: nine in ten, less three standard deviations."""
+    """12 studies of 60 runs on 15 beds that are correlated by 0.05: nine in ten, less two standard deviations."""
     random, held = np.random.default_rng(0), 0
-    for _ in range(25):
+    for _ in range(12):
         bed = np.concatenate([random.permutation(15) for _ in range(4)])
         values = (random.random(60) < random.beta(19.0 * 0.8, 19.0 * 0.2, 15)[bed]).astype(float)
         first = np.unique(bed[:20], return_inverse=True)[1]
         law, width = LikeRuns(values[:20], first), half_width_of(values, bed) or 0.0
         found = half_width_range(law, bed[20:], values=values[:20], values_bed=bed[:20], correlation=0.05)
         held += found is not None and found.lower <= width <= found.upper
-    assert held >= 18
+    assert held >= 9
 
 
-STUDIES, FIRST, LARGEST = 60, 120, 1200
+STUDIES, FIRST, LARGEST = 40, 120, 1200
 Answers = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -138,10 +138,10 @@ def stop(values: np.ndarray, bed: np.ndarray, half_width: float) -> list[int]:
         counts.append(count)
 
 
-@pytest.mark.parametrize("rho", [0.0, 0.05, 0.2])
+@pytest.mark.parametrize("rho", [0.0, 0.2])
 def test_runs_go_on_until_the_interval_is_narrow_enough_and_then_it_holds_the_truth(rho: float) -> None:
     truth, half_width = Truth(rho=rho), 0.015
-    exact, held, counts = exact_share(truth), 0, []
+    exact, held, counts = exact_share(truth, 200_000), 0, []
     for seed in range(STUDIES):
         values, bed = landings(truth, returns, seed)
         path = stop(values, bed, half_width)
@@ -154,10 +154,10 @@ def test_runs_go_on_until_the_interval_is_narrow_enough_and_then_it_holds_the_tr
         assert estimate.share.upper is not None
         held += estimate.share.lower <= exact <= estimate.share.upper
         counts.append(end)
-    # A nominal 90 %, looked at several times; 0.78 is 3 standard deviations of sixty studies below it.
+    # A nominal 90 %, looked at several times; 0.78 is 2.5 standard deviations of forty studies below it.
     assert 0.78 <= held / STUDIES <= 1.0
-    # Beds that differ ask for more runs: t sd sqrt(rho / B + (1 - rho) / N) with sd 0.14 is 0.015 at 240, 330 and 600.
-    assert {0.0: 200, 0.05: 220, 0.2: 280}[rho] < np.mean(counts) < {0.0: 360, 0.05: 400, 0.2: 600}[rho]
+    # Beds that differ ask for more runs: t sd sqrt(rho / B + (1 - rho) / N) with sd 0.14 is 0.015 at 240 and 600.
+    assert {0.0: 200, 0.2: 280}[rho] < np.mean(counts) < {0.0: 360, 0.2: 600}[rho]
 
 
 def test_an_outcome_of_yes_or_no_asks_for_more_runs_and_missing_ones_for_more_still() -> None:

@@ -11,7 +11,8 @@ from lithobrake.chaos import Normal, sobol_sequence
 from lithobrake.emulator import Emulator
 
 INPUTS = {name: Normal(0.0, 1.0) for name in ("friction", "density", "strength")}
-SEEN = [Observation({"speed": value}) for value in (0.9, 1.4, 0.4)]
+# So far out that few points of the prior come near.
+SEEN = [Observation({"speed": 2.2})]
 needs_emcee = pytest.mark.skipif(
     importlib.util.find_spec("emcee") is None, reason='emcee is not installed: pip install "lithobrake[infer]"'
 )
@@ -20,9 +21,9 @@ needs_emcee = pytest.mark.skipif(
 @pytest.fixture(scope="module")
 def model() -> Emulator:
     """An emulator of a response that friction alone moves, with scatter 0.7."""
-    random, x = np.random.default_rng(1), sobol_sequence(INPUTS, 200, seed=2)
-    speed = x[:, 0] + 0.7 * random.standard_normal(200)
-    return emulator.fit(INPUTS, x, speed, groups=np.arange(200) % 20, output_names=["speed"])
+    random, x = np.random.default_rng(1), sobol_sequence(INPUTS, 100, seed=2)
+    speed = x[:, 0] + 0.7 * random.standard_normal(100)
+    return emulator.fit(INPUTS, x, speed, groups=np.arange(100) % 20, output_names=["speed"])
 
 
 @needs_emcee

@@ -137,7 +137,7 @@ def test_estimate_sees_long_tails():
     inputs = {"a": Normal(0.0, 1.0), "b": Normal(0.0, 1.0)}
     test = sobol(inputs, 2000, seed=9)
     ratios = []
-    for seed in range(4):
+    for seed in range(2):
         x = sobol(inputs, 50, seed=seed)
         for truth in (
             lambda t: np.abs(t[:, 0]) + np.exp(0.5 * t[:, 1]),

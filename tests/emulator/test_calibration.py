@@ -16,8 +16,8 @@ from ..quick_studies import quick_studies
 from ..synthetic_landings import ELEVATION_LIMIT, NO_SOIL, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
 from .conditional_errors import DrawnRuns, fitted, law_errors
 
-# Runs and beds of a study, and seeds of the studies of a truth.
-SIZE, STUDIES = (300, 30), (100, 101)
+# Runs and beds of a study, and seeds of the studies of a truth: more are in docs/emulator.md.
+SIZE, STUDIES = (300, 30), (100,)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -42,13 +42,13 @@ def test_the_conditional_law_is_near_the_truth(truth: Truth, limits: tuple[float
 
 def test_without_an_effect_it_is_as_good_as_drawing_rows() -> None:
     scores, found = [], []
-    for seed in range(4):
+    for seed in range(2):
         model = fitted(NO_SOIL, 150, 15, seed)
         scores.append([fresh_energy_score(one) for one in (model, DrawnRuns(model))])
         found.append(any(model.found_inputs().values()))
     of_model, of_rows = np.mean(scores, axis=0)
     assert of_model <= 1.01 * of_rows
-    # Each finds one with probability 0.1: more than two of four with 0.004, more than one with 0.05.
+    # Each finds one with probability 0.1, both with 0.01.
     assert sum(found) <= 1
 
 
@@ -72,13 +72,10 @@ def standardised(y: np.ndarray) -> np.ndarray:
 
 def test_draws_have_the_skewness_of_the_scatter() -> None:
     truth = Truth(soil=1.0, rho=0.0, capture=0.0, skewness=2.0, branch_gap=0.0)
-    skewness = []
-    for seed in range(2):
-        model = fitted(truth, 300, 30, seed)
-        drawn = model.sample(random_soils(4000, np.random.default_rng(seed)), 5)[:, :, 0]
-        # A rare draw is captured, as no run was, and has no speed.
-        skewness.append(stats.skew(special.logit(drawn[~np.isnan(drawn)] / SPEED_LIMIT)))
-    assert abs(np.mean(skewness) - 2.0) < 0.5
+    drawn = fitted(truth, 300, 30, 0).sample(random_soils(4000, np.random.default_rng(0)), 5)[:, :, 0]
+    # A rare draw is captured, as no run was, and has no speed.
+    skewness = stats.skew(special.logit(drawn[~np.isnan(drawn)] / SPEED_LIMIT))
+    assert abs(skewness - 2.0) < 0.5
 
 
 def test_no_draw_of_a_million_leaves_its_bounds() -> None:
@@ -104,19 +101,19 @@ def test_intervals_from_refits_hold_the_truth() -> None:
     exact = np.median(replace(truth, capture=0.0).study(100_000, 100_000, 1)[1][:, 0])
     soils = random_soils(1000, np.random.default_rng(0))
     held = 0
-    for seed in range(5):
+    for seed in range(3):
         model = fitted(truth, 120, bed_count, seed)
         # The same seed for all: they differ by what they were fitted to, and less by their draws.
         medians = [np.nanmedian(refit.sample(soils, 1)[:, 0, 0]) for refit in model.refits(refit_count)]
         half = stats.t.ppf(0.95, bed_count - 1) * np.std(medians) * np.sqrt(bed_count / (bed_count - 1.0))
         held += abs(np.nanmedian(model.sample(soils, 5)[:, :, 0]) - exact) <= half
-    # Nine of ten intervals hold; two or fewer of five with probability 0.009.
-    assert held >= 3
+    # Nine of ten intervals hold; one or none of three with probability 0.028.
+    assert held >= 2
 
 
 INPUTS = {"friction": Uniform(0.0, 1.0), "speed": Uniform(0.0, 1.0)}
 SOIL = [[0.7, 0.4]]
-GRID = np.linspace(1e-3, 1.0 - 1e-3, 500)
+GRID = np.linspace(1e-3, 1.0 - 1e-3, 250)
 
 
 @pytest.fixture(scope="module")
@@ -139,7 +136,7 @@ def densities(model: Emulator, name: str, grid: np.ndarray, **errors: float) -> 
 def test_the_density_of_an_output_integrates_to_the_chance_of_having_outputs(model: Emulator) -> None:
     clear = model.outcome_probability(SOIL)[0, model.outcome_names.index("clear")]
     assert np.trapezoid(densities(model, "share", GRID), GRID) == pytest.approx(clear, rel=1e-3)
-    heights = np.linspace(-10.0, 15.0, 500)
+    heights = np.linspace(-10.0, 15.0, 250)
     assert np.trapezoid(densities(model, "height", heights), heights) == pytest.approx(clear, rel=1e-6)
 
 
@@ -156,13 +153,13 @@ def test_draws_fall_where_a_density_with_their_kernels_says(model: Emulator, mon
 
 
 def test_what_is_not_observed_drops_out(model: Emulator) -> None:
-    heights = np.linspace(-10.0, 15.0, 500)
+    heights = np.linspace(-10.0, 15.0, 250)
     joint = np.exp([model.log_density({"share": 0.6, "height": one}, SOIL)[0] for one in heights.tolist()])
     assert np.trapezoid(joint, heights) == pytest.approx(np.exp(model.log_density({"share": 0.6}, SOIL)[0]), rel=1e-6)
 
 
 def test_an_error_blurs_the_density(model: Emulator) -> None:
-    heights = np.linspace(-10.0, 15.0, 500)
+    heights = np.linspace(-10.0, 15.0, 250)
     sharp, blurred = densities(model, "height", heights), densities(model, "height", heights, height=0.5)
     kernel = np.exp(-0.5 * ((heights[:, None] - heights) / 0.5) ** 2) / (0.5 * np.sqrt(2.0 * np.pi))
     assert blurred == pytest.approx(np.trapezoid(kernel * sharp, heights, axis=1), abs=1e-6)

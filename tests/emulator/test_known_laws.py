@@ -9,6 +9,7 @@ from scipy import special
 
 from lithobrake import emulator
 from lithobrake.chaos import Normal, Uniform, latin_hypercube, sobol_sequence
+from lithobrake.emulator import validation
 from lithobrake.emulator.mean_law import MOST_TERMS, candidate_terms, found_inputs, terms_up_to
 from lithobrake.emulator.ridge_ladder import Rung, Smoother, TermTable, best_ladder
 
@@ -92,7 +93,7 @@ def test_branches_that_cross_are_as_near_as_a_published_expansion_makes_them() -
 
     errors, points = [], latin_hypercube(inputs, 100, seed=9)
     truth, levels = drawn(points, 2000, np.random.default_rng(8)), (np.arange(500) + 0.5) / 500
-    for seed in range(4):
+    for seed in range(2):
         x = latin_hypercube(inputs, 400, seed=seed)
         found = emulator.fit(inputs, x, drawn(x, 1, np.random.default_rng(seed))).sample(points, 2000)[:, :, 0]
         gaps = np.quantile(found, levels, axis=1) - np.quantile(truth, levels, axis=1)
@@ -118,12 +119,12 @@ def test_a_bound_that_is_far_bends_nothing(centre: float, distant: tuple[int, ..
 def test_an_emulator_does_not_lose_to_its_runs() -> None:
     """On laws without inputs that count, chosen laws hardly pass the gate, and those that do cost little."""
     inputs, passed = inputs_of(4), 0
-    for seed in range(6):
+    for seed in range(3):
         random = np.random.default_rng(seed)
         x = latin_hypercube(inputs, 100, seed=seed)
         passed += emulator.fit(inputs, x, random.gamma(2.0, size=100)).follows_inputs
-    # By luck a gain is above its error in 16 of 100; more than two of six with probability 0.06.
-    assert passed <= 2
+    # By luck a gain is above its error in 16 of 100; more than one of three with probability 0.07.
+    assert passed <= 1
 
 
 MEAN_LAW_INPUTS = {"a": Uniform(0.0, 2.0), "b": Normal(0.0, 1.0), "c": Uniform(-1.0, 1.0)}
@@ -147,10 +148,9 @@ def test_indices_are_those_of_the_polynomial() -> None:
 
 
 @pytest.mark.parametrize("explained", [0.1, 0.3])
-def test_the_share_of_the_inputs_is_freed_of_noise(explained: float, request: pytest.FixtureRequest) -> None:
-    if explained > 0.2:
-        # A tenth is in doubt where few beds are left out at a time.
-        request.getfixturevalue("quick")
+def test_the_share_of_the_inputs_is_freed_of_noise(explained: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A tenth is in doubt where few runs are left: an eighth of them at a time is left out, and not a quarter.
+    monkeypatch.setattr(validation, "MOST_FOLDS", 4 if explained > 0.2 else 8)
     noise = np.sqrt(7.0 / 9.0 * (1.0 / explained - 1.0))
     shares = [fitted(1.0, noise, 240, seed).mean_law().share[0] for seed in range(10)]
     # Ten studies with a standard deviation of about 0.05 each.

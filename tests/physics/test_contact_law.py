@@ -175,7 +175,7 @@ def test_box_of_boxes_comes_to_rest():
             normal, point = np.zeros(3), np.zeros(3)
             normal[axis], point[axis] = sign, place
             world.add_plane(point, normal, stuff)
-    world.run(duration=4.0)
+    world.run(duration=2.0)
     assert kinetic(world) < 1e-9 * world.mass.sum() * 9.81 * 0.1
     assert np.abs(world.position[:, 2] - (0.05 + 0.1 * (np.arange(8) // 4))).max() < 2e-3
 
