@@ -6,9 +6,11 @@ import pickle
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
+from functools import cache
 from typing import Any
 
 import pytest
+from matplotlib.figure import Figure
 
 from lithobrake.campaign import LocalExecutor, executors
 from lithobrake.campaign.single_run import Limits
@@ -16,6 +18,7 @@ from lithobrake.campaign.worker import pickled
 from lithobrake.emulator import validation
 from lithobrake.pipeline import study_run
 from lithobrake.pipeline.commands import rare_landings, site_maps
+from lithobrake.report import reports
 from lithobrake.report.figures.style import STYLE
 
 
@@ -45,6 +48,20 @@ def one_process() -> Iterator[None]:
     """Quick studies that have one worker where none are asked for, as on a machine of one core."""
     with quick_studies(), pytest.MonkeyPatch.context() as patch:
         patch.setattr(executors, "available_cores", lambda: 1)
+        yield
+
+
+@contextmanager
+def blank_pictures() -> Iterator[None]:
+    """Figures of reports are drawn, and saved as empty pictures of their kind: letters are what takes long to save."""
+
+    @cache
+    def blank(kind: str) -> bytes:
+        return saved(Figure(figsize=(1.0, 1.0)), kind)
+
+    saved = reports._saved
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(reports, "_saved", lambda figure, kind: blank(kind))
         yield
 
 

@@ -7,6 +7,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from lithobrake.results.summary import Summary
 
 from .command_line import lithobrake
 from .few_grains import EXPANSION, ONE_IMPACT, few_grains
+from .quick_studies import blank_pictures, quick_studies
 
 STUDY = f"""title = "A few grains"
 monte_carlo = {{ sample_count = 200 }}
@@ -70,10 +72,16 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def out(study: Path) -> Path:
+def blank() -> Iterator[None]:
+    with blank_pictures():
+        yield
+
+
+@pytest.fixture(scope="module")
+def out(study: Path, blank: None) -> Path:
     folder = study.parent / "first"
-    # From an interpreter of its own, as a user starts it.
-    ended = subprocess.run(command(study, folder, 2), capture_output=True, text=True, check=False, timeout=600)
+    # Two processes make the runs; the study that is stopped has an interpreter of its own, as a user starts it.
+    ended = lithobrake("run", study, "--out", folder, "--workers", 2)
     assert ended.returncode == 0, ended.stderr
     assert "Report: " in ended.stdout
     assert len(ended.stdout.strip().splitlines()) == len(summary(folder)["results"]["headline"]) + 1
@@ -154,7 +162,8 @@ def test_ctrl_c_keeps_the_runs_and_one_worker_ends_with_the_same_bits(study: Pat
     assert "Traceback" not in said
     assert 2 <= finished_runs(other) < finished_runs(out)
     # To the summary: pages of the same numbers are the same bytes, which tests/report looks at.
-    run(study, other, workers=1, report=False)
+    with quick_studies():
+        run(study, other, workers=1, report=False)
     assert summary(other)["results"] == summary(out)["results"]
     assert summary(other)["study"] == summary(out)["study"]
     assert (other / "flights.csv").read_bytes() == (out / "flights.csv").read_bytes()

@@ -8,7 +8,7 @@ import pytest
 import lithobrake
 from lithobrake.results import StudyResults
 
-from ..quick_studies import quick_studies
+from ..quick_studies import blank_pictures, quick_studies
 from .few_terms import few_terms
 from .journeys.bouncing_lander import bounce, journey_tables
 
@@ -16,7 +16,7 @@ from .journeys.bouncing_lander import bounce, journey_tables
 @pytest.fixture(scope="module", autouse=True)
 def quick() -> Iterator[None]:
     """See both; fixtures of a session are made before, and ask for it themselves."""
-    with quick_studies(), few_terms():
+    with quick_studies(), few_terms(), blank_pictures():
         yield
 
 

@@ -6,18 +6,23 @@ from contextlib import contextmanager
 import pytest
 
 from lithobrake.emulator import fitting, law, mean_law, ridge_ladder
+from lithobrake.pipeline.journeys import emulated_journeys
 
 
 @contextmanager
 def few_terms() -> Iterator[None]:
-    """Emulators look at squares, products and a few powers, and try a part of the penalties and of the folds.
+    """Emulators look at few products and powers, try a part of the penalties and of the folds, and average few rungs;
+    they follow each lander of the journeys a few times.
 
     tests/emulator tests all of them. Whether it stands inside another of its kind makes no difference.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(mean_law, "MOST_TERMS", 40)
+        patch.setattr(mean_law, "MOST_TERMS", 24)
+        patch.setattr(ridge_ladder, "PENALTIES", (1e-4, 1e-2, 0.3))
+        patch.setattr(ridge_ladder, "LEAST_WEIGHT", 0.03)
         patch.setattr(ridge_ladder, "FADES_FIRST", (-0.9,))
         patch.setattr(fitting, "FOLDS", 3)
-        patch.setattr(fitting, "OUTCOME_FOLDS", 3)
-        patch.setattr(law, "INVERSE_PENALTIES", (1e-6, 1e-2, 0.3))
+        patch.setattr(fitting, "OUTCOME_FOLDS", 2)
+        patch.setattr(emulated_journeys, "COPIES", 6)
+        patch.setattr(law, "INVERSE_PENALTIES", (1e-4, 0.1))
         yield

@@ -144,7 +144,7 @@ NUMBER = 1
 @pytest.fixture(scope="module")
 def journeys_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("soil") / "soil.toml"
-    path.write_text(SOIL_JOURNEYS)
+    path.write_text(SOIL_JOURNEYS.replace("emulated_count = 40", "emulated_count = 0"))
     return path
 
 

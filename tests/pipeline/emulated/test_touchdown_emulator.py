@@ -21,8 +21,9 @@ from lithobrake.pipeline import plan_lines, plan_study, served_models
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import seen
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy, infer_study, read_bounces
+from lithobrake.pipeline.journeys import emulated_journeys
 from lithobrake.pipeline.journeys.delivery_options import option_arrivals
-from lithobrake.pipeline.journeys.emulated_journeys import COPIES, MOST_LANDINGS
+from lithobrake.pipeline.journeys.emulated_journeys import MOST_LANDINGS
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.report import write_report
@@ -115,7 +116,7 @@ def test_landings_are_made_where_there_is_no_answer(found: EmulatedJourneys, res
 
 def test_the_landers_of_the_journeys_meet_refits_that_have_not_seen_their_bed(results: StudyResults) -> None:
     own = rows(results, "own")
-    assert len(own) == COPIES * 48
+    assert len(own) == emulated_journeys.COPIES * 48
     refits = [{int(row["refit"]) for row in own if int(row["journey"]) == number} for number in range(48)]
     bed = results.journeys["bed"]
     for first in range(48):
@@ -168,13 +169,13 @@ def always_captured(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None:
-    changes = {"journey": {"count": 24}, "aim": AIM}
+    changes = {"journey": {"count": 12}, "aim": AIM}
     found = lithobrake.run(journey_tables(**changes), tmp_path / "out", workers=1, model=always_captured, report=False)
     emulated, aim = found.results.emulated, found.results.aim
     assert "left the ground, and it needs 8" in emulated.why
     assert emulated.why in found.results.answer
     assert [one.soil.missing for one in aim.aims] == [1.0] * 4
-    # Three of the 24 landers alone have an attitude.
+    # Three of the 12 landers alone have an attitude.
     assert (found.results.rest.faces, found.results.rest.tilt_deg) == ({}, None)
     assert found.touchdown_explorer is None
     with h5py.File(found.folder / "touchdown_explorer.h5") as file:
@@ -357,7 +358,11 @@ def test_an_emulator_of_before_the_spin_had_a_bound_is_refused_by_its_version(fo
     assert len(said.stderr.splitlines()) == 1
 
 
-def test_the_command_says_first_what_bounces_can_say(folder: Path, tmp_path: Path) -> None:
+def test_the_command_says_first_what_bounces_can_say(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The test above draws the picture.
+    monkeypatch.setattr("lithobrake.report.write_corner", lambda posterior, picture: None)
     said = CliRunner().invoke(app, ["infer", str(folder), "--bounce", str(bounces(tmp_path, SEEN))])
     assert said.exit_code == 0, said.output
     lines = " ".join(said.output.split())
