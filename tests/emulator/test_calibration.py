@@ -42,13 +42,13 @@ def test_the_conditional_law_is_near_the_truth(truth: Truth, limits: tuple[float
 
 def test_without_an_effect_it_is_as_good_as_drawing_rows() -> None:
     scores, found = [], []
-    for seed in range(2):
+    for seed in range(4):
         model = fitted(NO_SOIL, 150, 15, seed)
         scores.append([fresh_energy_score(one) for one in (model, DrawnRuns(model))])
         found.append(any(model.found_inputs().values()))
     of_model, of_rows = np.mean(scores, axis=0)
     assert of_model <= 1.01 * of_rows
-    # Each finds one with probability 0.1, both with 0.01.
+    # Each finds one with probability 0.1: more than two of four with 0.004, more than one with 0.05.
     assert sum(found) <= 1
 
 
@@ -101,14 +101,14 @@ def test_intervals_from_refits_hold_the_truth() -> None:
     exact = np.median(replace(truth, capture=0.0).study(100_000, 100_000, 1)[1][:, 0])
     soils = random_soils(1000, np.random.default_rng(0))
     held = 0
-    for seed in range(3):
+    for seed in range(5):
         model = fitted(truth, 120, bed_count, seed)
         # The same seed for all: they differ by what they were fitted to, and less by their draws.
         medians = [np.nanmedian(refit.sample(soils, 1)[:, 0, 0]) for refit in model.refits(refit_count)]
         half = stats.t.ppf(0.95, bed_count - 1) * np.std(medians) * np.sqrt(bed_count / (bed_count - 1.0))
         held += abs(np.nanmedian(model.sample(soils, 5)[:, :, 0]) - exact) <= half
-    # Nine of ten intervals hold; one or none of three with probability 0.028.
-    assert held >= 2
+    # Nine of ten intervals hold; two or fewer of five with probability 0.009.
+    assert held >= 3
 
 
 INPUTS = {"friction": Uniform(0.0, 1.0), "speed": Uniform(0.0, 1.0)}
