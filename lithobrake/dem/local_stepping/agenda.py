@@ -127,7 +127,7 @@ class Plans(NamedTuple):
     inverse_mass: Floats  # [pair_capacity], 1/kg, that the contact meets, more where its damping is strong
     longest: Floats  # [pair_capacity], s, step at which sliding, tilting and damping are followed stably
     duration: Floats  # [pair_capacity], s (m/s)^(1/5), duration of a collision times the fifth root of its speed
-    clear: Floats  # [pair_capacity], m, motion of both since the start with which listed features could touch first
+    apart_until: Floats  # [pair_capacity], m, motion of both since the start before which listed features are apart
     apart: Floats  # [pair_capacity, 3], m, from the first's centroid to the second's, at the last look
     spin: Floats  # [pair_capacity, 2, 3], rad/s, of both after the last look
     link: Integers  # [2 pair_capacity], next entry in the list of the first's, and of the second's pairs; -1: none
@@ -239,7 +239,7 @@ def plan_approach(
 
     Writes to plans and agenda.
     """
-    plans.clear[pair] = travelled(bodies, pairs.first[pair], pairs.second[pair]) + approach.gap
+    plans.apart_until[pair] = travelled(bodies, pairs.first[pair], pairs.second[pair]) + approach.gap
     wait = max(approach.time, collision_step(pair, pairs, flight, plans, approach.speed, rules))
     put_on(agenda, len(bodies.mass) + pair, now + wait)
 
@@ -310,6 +310,6 @@ def replan(
             if step < URGENT * plans.interval[pair]:
                 put_on(agenda, item, min(agenda.due[item], max(plans.last[pair] + step, now)))
         else:
-            free = pairs.wake[pair] if pairs.feature_count[pair] == 0 else plans.clear[pair]
+            free = pairs.wake[pair] if pairs.feature_count[pair] == 0 else plans.apart_until[pair]
             plan_apart(pair, bodies, pairs, flight, agenda, free, now, rules)
         entry = plans.link[entry]

@@ -54,7 +54,7 @@ def plans_of(capacity: int, used: int, time: float) -> Plans:
     free = np.arange(capacity - 1, -1, -1)
     return Plans(
         last=np.full(capacity, time), interval=np.zeros(capacity), inverse_mass=np.ones(capacity),
-        longest=np.zeros(capacity), duration=np.zeros(capacity), clear=np.zeros(capacity),
+        longest=np.zeros(capacity), duration=np.zeros(capacity), apart_until=np.zeros(capacity),
         apart=np.zeros((capacity, 3)), spin=np.zeros((capacity, 2, 3)),
         link=np.full(2 * capacity, -1), free=free, free_count=np.array([capacity - used]),
     )  # fmt: skip
@@ -109,7 +109,7 @@ class LocalEngine:
         used, n = np.flatnonzero(pairs.first >= 0), len(self.flight.time)
         self.engine.book()
         self._take(pairs, 2 * len(pairs.first))
-        for name in ("last", "interval", "inverse_mass", "longest", "clear", "apart", "spin"):
+        for name in ("last", "interval", "inverse_mass", "longest", "apart_until", "apart", "spin"):
             getattr(self.plans, name)[: len(used)] = getattr(plans, name)[used]
         for name in reactions._fields:
             getattr(self.reactions, name)[: len(used)] = getattr(reactions, name)[used]
