@@ -57,7 +57,7 @@ def _draw(study: Study, first: int, count: int) -> list[BedGround]:
     from lithobrake.chaos import Uniform, sobol_sequence
 
     assert study.ground is not None
-    uncertain = [name for name, kind in study.ground.kind.items() if isinstance(kind.weight, Uncertain)]
+    uncertain = _uncertain_weights(study.ground)
     uniform = dict.fromkeys([*DRAWN, *uncertain], Uniform(0.0, 1.0))
     points = sobol_sequence(uniform, count, hashed_seed(study.seed, "ground"), skip=first)
     return [
@@ -76,11 +76,17 @@ def _drawn(study: Study, kind: float, size: float, ratio: float, weights: Mappin
     return BedGround(names[number], number, drawn, _at(one.size_ratio, ratio), own)
 
 
+def _uncertain_weights(ground: GroundSection) -> list[str]:
+    """Kinds whose weight is uncertain."""
+    return [name for name, kind in ground.kind.items() if isinstance(kind.weight, Uncertain)]
+
+
 def _weights(kinds: Mapping[str, GroundKind], drawn: Mapping[str, float]) -> tuple[float, ...]:
     """The weights of the kinds on one body, in the order of the file; drawn: between 0 and 1, of uncertain ones."""
     given = [_at(kind.weight, drawn.get(name, 0.5)) for name, kind in kinds.items()]
     # Of numbers alone no bit changes.
-    return tuple(one / math.fsum(given) for one in given) if drawn else tuple(given)
+    total = math.fsum(given) if drawn else 1.0
+    return tuple(one / total for one in given)
 
 
 def mean_weights(study: Study) -> dict[str, float]:
@@ -88,11 +94,11 @@ def mean_weights(study: Study) -> dict[str, float]:
     from lithobrake.chaos import Uniform, sobol_sequence
 
     assert study.ground is not None
-    kinds = study.ground.kind
-    uncertain = dict.fromkeys((name for name in kinds if isinstance(kinds[name].weight, Uncertain)), Uniform(0.0, 1.0))
+    kinds, uncertain = study.ground.kind, _uncertain_weights(study.ground)
     if not uncertain:
         return dict(zip(kinds, _weights(kinds, {}), strict=True))
-    points = sobol_sequence(uncertain, BODIES, hashed_seed(study.seed, "weights")).tolist()
+    uniform = dict.fromkeys(uncertain, Uniform(0.0, 1.0))
+    points = sobol_sequence(uniform, BODIES, hashed_seed(study.seed, "weights")).tolist()
     bodies = [_weights(kinds, dict(zip(uncertain, point, strict=True))) for point in points]
     return {name: math.fsum(one) / BODIES for name, one in zip(kinds, zip(*bodies, strict=True), strict=True)}
 
@@ -211,9 +217,9 @@ def _ground_problems(study: Study, given: Mapping[str, Any]) -> Iterator[str]:
 
 def _weight_problems(ground: GroundSection) -> Iterator[str]:
     weights = {name: kind.weight for name, kind in ground.kind.items() if not isinstance(kind.weight, Uncertain)}
-    if len(weights) < len(ground.kind):
+    if uncertain := _uncertain_weights(ground):
         if len(ground.kind) == 1:
-            yield f"ground.kind.{next(iter(ground.kind))}.weight is uncertain, and there is no other kind; write 1"
+            yield f"ground.kind.{uncertain[0]}.weight is uncertain, and there is no other kind; write 1"
         return
     if ground.unknown == "both":
         yield (

@@ -27,7 +27,7 @@ from lithobrake.vocabulary.array_types import Floats, Integers, Vector
 
 # A body's pairs are planned anew when the speed of its surface has changed by this part of what it was.
 # Of contacts and near pairs together, a smaller part has fewer looked at and more planned anew: with a tenth looks are
-# 7 % fewer than with three, and the energy of landings is kept half as well.
+# 6 % fewer than with three tenths, and the energy of landings is kept half as well.
 NOTED_CHANGE = 0.3
 # The same of its acceleration, of which so much of gravity besides passes without notice.
 NOTED_WEIGHT = 0.2
