@@ -88,11 +88,11 @@ def contacts_of(bodies: Bodies, pairs: Pairs) -> NDArray[Any]:
 class Observables:
     """Bodies and planes under a constant acceleration, to be read; nothing here changes them.
 
-    gravity [m/s2], shape [3].
+    gravity [m/s2] and rotation of the frame [rad/s], shape [3].
     """
 
     def __init__(self, state: WorldState, gravity: Sequence[float]) -> None:
-        self.gravity = gravity
+        self.gravity, self.rotation = gravity, np.zeros(3)
         self.drag = 0.0  # 1/s, viscous damping of all motion, for settling only
         self._state = state
 
@@ -105,9 +105,21 @@ class Observables:
     def gravity(self, value: ArrayLike) -> None:
         self._gravity = vector(value, "World.gravity")
 
+    @property
+    def rotation(self) -> Floats:
+        """Rotation of the frame against the stars [rad/s], shape [3]; motions and spins are those against the frame.
+
+        Gravity is what a body at rest in the frame feels, its centrifugal part included.
+        """
+        return self._rotation
+
+    @rotation.setter
+    def rotation(self, value: ArrayLike) -> None:
+        self._rotation = vector(value, "World.rotation")
+
     def _step(self, time_step: float) -> Step:
         reduced = self._state.options["damping_mass"] == "paper"
-        return Step(time_step, float(self.drag), tuple(self.gravity), reduced)
+        return Step(time_step, float(self.drag), tuple(self.gravity), tuple(self.rotation), reduced)
 
     def _read(self) -> Engine:
         return self._state.read(self._step(0.0))

@@ -207,6 +207,7 @@ class World(Observables):
         count = self._clock.steps_in(duration, self._chosen_step) if steps is None else checked_count(steps)
         if count == 0:
             return
+        self._refuse_drag_in_turning_frame()
         self._clock.time_step = self.time_step
         engine = self._state.stepping_together(self._step(0.0))
         taken, reason = engine.advance(count, self._step(self.time_step), self._state.watched)
@@ -248,6 +249,7 @@ class World(Observables):
             raise FieldError(
                 "World.run_locally held_speed", held_speed, "is 0 while no body is watched", "call watch first", "m/s"
             )
+        self._refuse_drag_in_turning_frame()
         setting = Setting(self._step(0.0), float(steps_per_contact), self._state.watched)
         local = self._state.stepping_locally(setting, self.time)
         # No part of the setting: both follow the speed of the lander from call to call, and another setting has all
@@ -258,6 +260,12 @@ class World(Observables):
             self._refuse(DIVERGED)
         self.time = local.time
         self._refuse_buried()
+
+    def _refuse_drag_in_turning_frame(self) -> None:
+        if self.drag > 0.0 and self.rotation.any():
+            raise FieldError(
+                "World.drag", self.drag, "is 0 where World.rotation is not", "settle without a rotation", "1/s"
+            )
 
     def _refuse_buried(self) -> None:
         """Raise FloatingPointError for a body, but the watched one, that lies wholly behind a plane which meets it."""
@@ -349,5 +357,5 @@ class World(Observables):
         """Read a world that `save` wrote. Raises ValueError where the file is not one."""
         state, step, clock = read_checkpoint(path)
         world = World(step.gravity, None, period=None, **state.options)
-        world._state, world._clock, world.drag = state, Clock(**clock), step.drag
+        world._state, world._clock, world.drag, world.rotation = state, Clock(**clock), step.drag, step.rotation
         return world

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.dem.bodies.arrays import LOSSES, Pairs, Period, Step
-from lithobrake.dem.bodies.motion import write_spins
+from lithobrake.dem.bodies.orientation import write_spins
 from lithobrake.dem.bodies.rigid_body import Part, Plane, RigidBody
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.law.restitution import contact_options
@@ -32,11 +32,11 @@ from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.material_properties import Material
 
 NOTHING_WATCHED = -1
-FORMAT_VERSION = 7
+FORMAT_VERSION = 8
 
 
 class WorldState:
-    """Everything that the next step of a world depends on, but gravity, drag and time step."""
+    """Everything that the next step of a world depends on, but gravity, rotation, drag and time step."""
 
     def __init__(self, options: dict[str, str], period: Period) -> None:
         self.options, self.period = options, period
@@ -82,7 +82,7 @@ class WorldState:
     def read(self, step: Step) -> Engine:
         """Return an engine with the forces of the motion at hand, to be read: nothing that comes later depends on it.
 
-        Where nothing has been stepped yet, one on copies takes a step of no duration, with gravity and drag of `step`.
+        Where nothing has been stepped yet, one on copies takes a step of no duration, with the accelerations of `step`.
         """
         if self.engine is not None:
             return self.engine
@@ -166,7 +166,7 @@ def _shape(text: str) -> Shape:
 
 
 def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step, clock: dict[str, Any]) -> None:
-    """Write a state, the gravity and drag of its steps, and a clock of plain numbers to an HDF5 file."""
+    """Write a state, gravity, rotation and drag of its steps, and a clock of plain numbers to an HDF5 file."""
     import h5py
 
     # A file holds no plans of contacts at steps of their own, so those go back to common steps first.
@@ -181,7 +181,8 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
         file.attrs["options"], file.attrs["clock"] = json.dumps(state.options), json.dumps(clock)
         file.attrs["drag"], file.attrs["watched"], file.attrs["skin"] = step.drag, state.watched, engine.skin
         file.attrs["period"] = state.period
-        file["gravity"], file["lost"], file["watch_record"] = step.gravity, state.lost, state.watch_record
+        file["gravity"], file["rotation"] = step.gravity, step.rotation
+        file["lost"], file["watch_record"] = state.lost, state.watch_record
         file["part/shape"] = np.array([number[id(part.shape)] for part in parts], dtype=np.int64)
         file["part/material"] = material_numbers(parts, materials)
         file["body/part_start"] = part_starts(state.bodies)
@@ -217,7 +218,8 @@ def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dic
     state.watched, state.watch_record = int(attributes["watched"]), data["watch_record"]
     state.motion = {name: data[f"body/{name}"].copy() for name in state.motion}
     damping_with_reduced_mass = state.options["damping_mass"] == "paper"
-    step = Step(0.0, float(attributes["drag"]), tuple(data["gravity"].tolist()), damping_with_reduced_mass)
+    gravity, rotation = tuple(data["gravity"].tolist()), tuple(data["rotation"].tolist())
+    step = Step(0.0, float(attributes["drag"]), gravity, rotation, damping_with_reduced_mass)
     _restore(state.stepping_together(step), data, float(attributes["skin"]))
     state.lost[:] = data["lost"]
     return state, step, json.loads(attributes["clock"])

@@ -131,6 +131,12 @@ class Landers:
         felt: Array = self.body.felt(self.position[which], self.clock(which), self.mass[which], self.spin_period[which])
         return felt
 
+    def ground_spin(self, which: Integers) -> Array:
+        """Angular velocity of the ground where some landers are [rad/s], [count, 3], fixed to the body."""
+        from lithobrake.smallbody.rotation import ground_spin
+
+        return ground_spin(self.body.rotation, self.clock(which), self.spin_period[which])
+
     def impacts(self, which: Integers) -> ImpactStates:
         """The impacts of some landers that are under way."""
         return ImpactStates(
@@ -144,6 +150,7 @@ class Landers:
             spin=self.spin[which],
             attitude=[self.attitude[one] for one in which.tolist()],
             acceleration=into_frame(self.axes[which], self.acceleration(which)),
+            rotation=into_frame(self.axes[which], self.ground_spin(which)),
             time=self.time[which],
             left=self.duration - self.time[which],
             clock=self.clock(which),

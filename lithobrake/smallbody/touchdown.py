@@ -37,7 +37,7 @@ class ImpactStates:
                    the normal of the ground that is met
     speed          [m/s], and incidence_deg, in that frame; mean_incidence_deg: against the facet of the shape
     spin           angular velocity against the ground [rad/s]; attitude: of the lander's axes, None where not known
-    acceleration   of what rests there [m/s2], in the frame of the touchdown
+    acceleration   of what rests there [m/s2], and rotation of the ground [rad/s], in the frame of the touchdown
     time           since the first touchdown began [s]; left: of the journey [s]; clock: time as of `fly` [s]
     mass           of the body [kg]; spin_period [s]
     """
@@ -52,6 +52,7 @@ class ImpactStates:
     spin: Array
     attitude: "list[Rotation | None]"
     acceleration: Array
+    rotation: Array
     time: Array
     left: Array
     clock: Array

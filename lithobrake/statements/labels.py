@@ -66,6 +66,9 @@ INPUT_LABELS = {
     "surface.gravity": "gravity",
     "surface.slope_deg": "slope",
     "surface.slope_azimuth_deg": "azimuth of the slope",
+    "surface.rotation_x": "rotation of the ground about x",
+    "surface.rotation_y": "rotation of the ground about y",
+    "surface.rotation_z": "rotation of the ground about z",
 }
 FIELD_WORDS = {"young_modulus": "Young's modulus", "poisson_ratio": "Poisson's ratio"}
 WHOLE_WORDS = {"impact.speed": "impact speed", GROUND_SIZE: "grain size", GROUND_KIND: "kind of ground"}

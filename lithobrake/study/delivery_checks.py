@@ -285,6 +285,11 @@ def journey_problems(study: Study) -> Iterator[str]:
             'surface.slope_deg is given; with surface.gravity = "site" every touchdown has the slope of where it is; '
             "leave it out, or give surface.gravity a number"
         )
+    if study.has_local_ground and study.surface.model_fields_set & {"rotation_x", "rotation_y", "rotation_z"}:
+        yield (
+            'surface.rotation_x, rotation_y or rotation_z is given; with surface.gravity = "site" the ground turns as '
+            "the body; leave it out, or give surface.gravity a number"
+        )
     if journey.touchdowns == 1:
         return
     if not study.has_local_ground:

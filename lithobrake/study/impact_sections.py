@@ -23,6 +23,8 @@ LATEST = 1e11
 Interval = Annotated[tuple[float, float], Numbers("m", count=2, ascending=True)]
 Place = Annotated[Scalar, MaybeUncertain("m")]
 Spin = Annotated[Scalar, MaybeUncertain("rad/s")]
+# No body of rubble turns faster than once in ten minutes.
+Rotation = Annotated[Scalar, MaybeUncertain("rad/s", at_least=-0.01, at_most=0.01)]
 
 
 class PlaceSection(Section):
@@ -83,6 +85,13 @@ class SurfaceSection(Section):
     """Angle by which the surface is tilted relative to the acceleration."""
     slope_azimuth_deg: Angle = 0.0
     """Downhill direction in the bed, from +x."""
+    rotation_x: Rotation = 0.0
+    """Angular velocity of the ground about the bed's x axis, for the Coriolis acceleration. With gravity = "site" it is
+    that of the body where each touchdown is."""
+    rotation_y: Rotation = 0.0
+    """Angular velocity of the ground about the bed's y axis."""
+    rotation_z: Rotation = 0.0
+    """Angular velocity of the ground about the bed's z axis."""
 
 
 class ContactSection(Section):

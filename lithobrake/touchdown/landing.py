@@ -44,6 +44,7 @@ class Landing:
     # m: the lander is followed until it rests, or leaves for a hop that rises higher over the ground. None: it is
     # followed until it leaves the ground or is captured.
     hop_height: float | None = None
+    rotation: Vector = (0.0, 0.0, 0.0)  # rad/s, of the ground, against which velocity and spin are
     contact: ContactModel = field(default_factory=ContactModel)
 
     def __post_init__(self) -> None:
@@ -52,6 +53,7 @@ class Landing:
             ("incidence", 0.0 <= self.incidence < 0.5 * math.pi, "is 0 <= value < pi/2 rad"),
             ("azimuth", math.isfinite(self.azimuth), "is a finite angle"),
             ("gravity", all(math.isfinite(g) for g in self.gravity), "are three finite numbers"),
+            ("rotation", all(math.isfinite(w) for w in self.rotation), "are three finite numbers"),
             ("spin", all(math.isfinite(w) for w in self.spin), "are three finite numbers"),
             ("orientation", 0.0 < math.hypot(*self.orientation) < math.inf, "are four finite numbers, not all zero"),
             ("time_limit", 0.0 < self.time_limit < math.inf, "is a finite value above 0 s"),

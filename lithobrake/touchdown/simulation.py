@@ -54,6 +54,7 @@ def land(
         world.gravity = np.array(landing.gravity)
     else:
         relax(world, bed, landing, lambda fraction: progress(fraction, "bed taking on the soil of the landing"))
+    world.rotation = np.array(landing.rotation)
     number = release(world, bed, lander, landing)
     world.time_step = world.shortest_contact(landing.speed) / landing.contact.steps_per_contact
     world.watch(number)

@@ -29,6 +29,7 @@ STUDY_KEYS = {
     "Landing.place": StudyKey("impact.place"),
     "Landing.orientation": StudyKey("impact.orientation"),
     "Landing.spin": StudyKey("[impact.spin_x, spin_y, spin_z]"),
+    "Landing.rotation": StudyKey("[surface.rotation_x, rotation_y, rotation_z]"),
     "Landing.gravity": StudyKey("surface.gravity with surface.slope_deg, as a vector,"),
     "Landing.time_limit": StudyKey("landing.time_limit"),
     "Landing.hop_height": StudyKey("journey.hop_height"),

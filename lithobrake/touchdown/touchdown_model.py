@@ -19,6 +19,7 @@ from lithobrake.vocabulary.quantities import (
     IMPACT_SPEED,
     ORIENTATION,
     PLACE,
+    ROTATION,
     SPIN,
     TIME_LEFT,
 )
@@ -106,6 +107,7 @@ def landing(study: Study, values: Values) -> "touchdown.Landing":
     """How the lander arrives, on which soil, under which acceleration; values with what was drawn."""
     w, x, y, z = (values[name] for name in ORIENTATION)
     spin_x, spin_y, spin_z = (values[name] for name in SPIN)
+    turn_x, turn_y, turn_z = (values[name] for name in ROTATION)
     return touchdown.Landing(
         grain=grain(values),
         speed=values[IMPACT_SPEED],
@@ -115,6 +117,7 @@ def landing(study: Study, values: Values) -> "touchdown.Landing":
         orientation=(w, x, y, z),
         spin=(spin_x, spin_y, spin_z),
         gravity=acceleration(values, values["surface.gravity"]),
+        rotation=(turn_x, turn_y, turn_z),
         # What is left of a journey.
         time_limit=min(values.get(TIME_LEFT, study.journey.duration), study.landing.time_limit or math.inf),
         hop_height=hop_height(study, values),

@@ -13,7 +13,7 @@ import pytest
 
 import lithobrake.compilation.compiled as compiled
 import lithobrake.compilation.disk_cache as disk_cache
-from lithobrake.dem.bodies.motion import write_rotations
+from lithobrake.dem.bodies.orientation import write_rotations
 
 QUARTER_TURN = np.array([[0.5, 0.5, -0.5, 0.5]])
 TURNED = [0.0, -1.0, 0.0, 0.0, 0.0, -1.0, 1.0, 0.0, 0.0]
@@ -39,7 +39,7 @@ def rotation() -> list[float]:
 
 def kept(cache: Path) -> list[Path]:
     """The kernel of `rotation` in the cache."""
-    return sorted(cache.rglob("dem.bodies.motion.write_rotations-*"))
+    return sorted(cache.rglob("dem.bodies.orientation.write_rotations-*"))
 
 
 def test_cache_folder_changes_with_any_source_of_the_part(tmp_path, monkeypatch):
@@ -191,7 +191,7 @@ def test_waiting_for_another_process_is_told_once(cache, caplog):
 TURN = """
 import sys
 import numpy as np
-from lithobrake.dem.bodies.motion import write_rotations
+from lithobrake.dem.bodies.orientation import write_rotations
 print("ready", flush=True)
 sys.stdin.readline()
 rotation = np.zeros((1, 3, 3))

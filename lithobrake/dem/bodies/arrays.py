@@ -149,6 +149,7 @@ class Step(NamedTuple):
     time_step: float  # s
     drag: float  # 1/s, viscous damping of all motion, 0 but in settling
     gravity: tuple[float, float, float]  # m/s2
+    rotation: tuple[float, float, float]  # rad/s, of the frame
     paper_mass: bool  # damping with the reduced mass of the bodies, not the mass seen at the contact point
 
 

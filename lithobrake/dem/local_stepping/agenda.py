@@ -213,12 +213,14 @@ def way_since(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rule
 
 @kernel
 def plan_apart(
-    pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, agenda: Agenda, free: float, now: float, rules: Rules
+    pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, free: float, now: float,
+    rules: Rules,
 ) -> None:  # fmt: skip
-    """Make a pair due when it could touch first, wherever it is near. Writes to agenda.
+    """Make a pair due when it could touch first, wherever it is near; where features are listed, not before a step of
+    what would come has passed since its last look.
 
-    free: motion of both since the start [m] before which they do not touch. Only one of the two may have been moved to
-    now [s].
+    Writes to agenda. free: motion of both since the start [m] before which they do not touch. Only one of the two may
+    have been moved to now [s].
     """
     first, second = pairs.first[pair], pairs.second[pair]
     way, gained = way_since(bodies, flight, first, now, rules)
@@ -227,7 +229,11 @@ def plan_apart(
         way, gained = way_since(bodies, flight, second, now, rules)
         gap, speed = gap - way, speed + gained
     acceleration = relative_surge(bodies, flight, first, second, rules)
-    put_on(agenda, len(bodies.mass) + pair, now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0))
+    due = now + (time_to_close(gap, speed, acceleration) if gap > 0.0 else 0.0)
+    # What is apart by no more than rounding would be due at once, for ever, whenever its bodies are planned anew.
+    if pairs.feature_count[pair] != 0:
+        due = max(due, plans.last[pair] + collision_step(pair, pairs, flight, plans, speed, rules))
+    put_on(agenda, len(bodies.mass) + pair, due)
 
 
 @kernel
@@ -297,7 +303,7 @@ def replan(
     flight.slack[body], flight.surge[body] = 0.0, 0.0
     if touches(pairs, flight, plans, body):
         along = acceleration_of(bodies, flight, body, rules)
-        surge = dot(along, along) ** 0.5 + turning_rate(bodies, flight, body)
+        surge = dot(along, along) ** 0.5 + turning_rate(bodies, flight, body, rules)
         flight.slack[body] = NOTED_CHANGE * surface_speed(bodies, flight, body)
         flight.surge[body] = NOTED_CHANGE * surge + NOTED_WEIGHT * weight(rules)
     plan_search(bodies, flight, agenda, body, now, rules)
@@ -311,5 +317,5 @@ def replan(
                 put_on(agenda, item, min(agenda.due[item], max(plans.last[pair] + step, now)))
         else:
             free = pairs.wake[pair] if pairs.feature_count[pair] == 0 else plans.apart_until[pair]
-            plan_apart(pair, bodies, pairs, flight, agenda, free, now, rules)
+            plan_apart(pair, bodies, pairs, flight, plans, agenda, free, now, rules)
         entry = plans.link[entry]

@@ -6,7 +6,8 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
-from lithobrake.dem.bodies.motion import turn_by
+from lithobrake.dem.bodies.orientation import turn_by
+from lithobrake.dem.bodies.turning_frame import bulge, coasted, precession, turn_frame, with_frame
 from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled, times, way_between
 from lithobrake.dem.narrow_phase.contact_patch import measure_feature, sphere_centres
 from lithobrake.dem.narrow_phase.feature_distance import SPHERES, feature_indices, feature_kind, listed_feature
@@ -30,6 +31,7 @@ class Flight(NamedTuple):
     surge: Floats  # [body_count], m/s2, change of the acceleration of its surface for which they do
     touching: Integers  # [body_count], contacts that push it
     turning: Floats  # [body_count], 1/(kg m2), largest inverse moment of inertia
+    slenderness: Floats  # [body_count], largest over smallest moment of inertia
     mass: Floats  # [part_count], kg, smallest that a contact meets
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
     stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
@@ -40,6 +42,8 @@ class Flight(NamedTuple):
 
 class Rules(NamedTuple):
     gravity: Vector  # m/s2
+    rotation: Vector  # rad/s, of the frame
+    rate: float  # rad/s, size of the rotation
     drag: float  # 1/s
     paper_mass: bool  # as in Step
     steps: float  # in the duration of a contact
@@ -75,28 +79,32 @@ def acceleration_of(bodies: Bodies, flight: Flight, body: int, rules: Rules) -> 
 
 
 @kernel
-def turning_rate(bodies: Bodies, flight: Flight, body: int) -> float:
-    """Return a bound on how fast contacts change the speed of a body's surface by its spin [m/s2]."""
-    torque = row(bodies.torque, body)
-    turning = bodies.turning_radius[body] * flight.turning[body]
-    return 0.0 if flight.held[body] else turning * dot(torque, torque) ** 0.5
+def turning_rate(bodies: Bodies, flight: Flight, body: int, rules: Rules) -> float:
+    """Return a bound on how fast contacts, and the frame, change the speed of a body's surface by its spin [m/s2]."""
+    if flight.held[body]:
+        return 0.0
+    torque, radius = row(bodies.torque, body), bodies.turning_radius[body]
+    bound = radius * flight.turning[body] * dot(torque, torque) ** 0.5
+    if rules.rate > 0.0:
+        bound += radius * precession(flight.slenderness[body], spin_bound(bodies, flight, body), rules.rate)
+    return bound
 
 
 @kernel
 def surge_bound(bodies: Bodies, flight: Flight, body: int, rules: Rules) -> float:
     """Return a bound on the acceleration of a body's surface while its plans hold [m/s2]."""
     along = acceleration_of(bodies, flight, body, rules)
-    return dot(along, along) ** 0.5 + turning_rate(bodies, flight, body) + flight.surge[body]
+    return dot(along, along) ** 0.5 + turning_rate(bodies, flight, body, rules) + flight.surge[body]
 
 
 @kernel
 def relative_surge(bodies: Bodies, flight: Flight, first: int, second: int, rules: Rules) -> float:
     """Return a bound on the acceleration of two surfaces against each other while their plans hold [m/s2]."""
     along = acceleration_of(bodies, flight, first, rules)
-    bound = turning_rate(bodies, flight, first) + flight.surge[first]
+    bound = turning_rate(bodies, flight, first, rules) + flight.surge[first]
     if second >= 0:
         along = minus(along, acceleration_of(bodies, flight, second, rules))
-        bound += turning_rate(bodies, flight, second) + flight.surge[second]
+        bound += turning_rate(bodies, flight, second, rules) + flight.surge[second]
     return bound + dot(along, along) ** 0.5
 
 
@@ -110,28 +118,41 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
     if flight.held[body]:
         return
     before, spin = row(bodies.velocity, body), spin_bound(bodies, flight, body)
-    after = fall(bodies, body, before, time, acceleration_of(bodies, flight, body, rules), rules.drag)
+    along = acceleration_of(bodies, flight, body, rules)
+    after = fall(bodies, body, before, time, along, rules)
     # Under a steady torque the angular momentum moves on a straight line, as the velocity does.
     half = scaled(0.5 * time, row(bodies.torque, body))
     add(bodies.angular_momentum, body, 1.0, half)
     # In flight, with drag or without, the velocity moves on a straight line, on which its size is largest at an end.
     fastest = max(dot(before, before), dot(after, after)) ** 0.5
+    if rules.rate > 0.0:
+        fastest += bulge(before, after, along, time, rules.rate)
+        spin += time * precession(flight.slenderness[body], spin, rules.rate)
+        with_frame(bodies, body, 1.0, rules.rotation)
     middle = spin_bound(bodies, flight, body)
-    parts = 1 + int(middle * time / LARGEST_TURN)
+    parts = 1 + int((middle + rules.rate) * time / LARGEST_TURN)
     for _ in range(parts):
         turn_freely(bodies, body, time / parts)
+        if rules.rate > 0.0:
+            turn_frame(bodies, body, time / parts, rules.rotation)
+    if rules.rate > 0.0:
+        with_frame(bodies, body, -1.0, rules.rotation)
     add(bodies.angular_momentum, body, 1.0, half)
     spin = max(spin, spin_bound(bodies, flight, body))
     bodies.travel[body] += time * (fastest + bodies.turning_radius[body] * spin)
 
 
 @kernel
-def fall(bodies: Bodies, body: int, before: Vector, time: float, along: Vector, drag: float) -> Vector:
-    """Move a body for a time [s] under an acceleration [m/s2] and a drag [1/s], exactly; return its velocity then.
+def fall(bodies: Bodies, body: int, before: Vector, time: float, along: Vector, rules: Rules) -> Vector:
+    """Move a body for a time [s] under an acceleration [m/s2], and drag or a turning frame; return its velocity then.
 
-    Writes to bodies.
+    Exact. Writes to bodies.
     """
-    if drag == 0.0:
+    drag = rules.drag
+    if rules.rate > 0.0:
+        way, after = coasted(before, along, time, rules.rotation)
+        add(bodies.position, body, 1.0, way)
+    elif drag == 0.0:
         after = plus(before, scaled(time, along))
         add(bodies.position, body, time, plus(before, scaled(0.5 * time, along)))
     else:
@@ -174,6 +195,9 @@ def place_at(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules
     if flight.held[body]:
         return row(bodies.position, body)
     time = now - flight.time[body]
+    if rules.rate > 0.0:
+        along = acceleration_of(bodies, flight, body, rules)
+        return plus(row(bodies.position, body), coasted(row(bodies.velocity, body), along, time, rules.rotation)[0])
     way, drop = time, 0.5 * time * time
     drag = rules.drag
     if drag > 0.0:
@@ -228,10 +252,11 @@ def closing_speed(bodies: Bodies, flight: Flight, first: int, second: int) -> fl
 def closing_acceleration(bodies: Bodies, flight: Flight, first: int, second: int, speed: float, rules: Rules) -> float:
     """Return a bound on how the speed at which a feature closes grows [m/s2]; speed: at which any closes at most [m/s].
 
-    In the frame of a face: the fall, the turning of either's points, and what the turning of the face adds.
+    In the frame of a face: the fall, the turning of either's points, and what the turning of the face, and of the
+    frame, adds.
     """
     spin = spin_bound(bodies, flight, first)
-    acceleration = relative_surge(bodies, flight, first, second, rules)
+    acceleration = relative_surge(bodies, flight, first, second, rules) + 2.0 * rules.rate * speed
     acceleration += 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
     if second < 0:
         return acceleration

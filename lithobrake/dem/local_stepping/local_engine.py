@@ -6,6 +6,7 @@ import numpy as np
 
 from lithobrake.dem.bodies.arrays import Pairs, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
+from lithobrake.dem.bodies.turning_frame import slenderness_of
 from lithobrake.dem.bodies.vectors import folded
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import cells_of
@@ -37,6 +38,7 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     """Return bodies that have just arrived at an instant [s] and were never planned."""
     n = len(bodies)
     turning: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body)[:, -1].astype(np.float64)
+    slenderness = slenderness_of(engine.bodies.inverse_inertia_body)
     mass = np.array([mass for body in bodies for mass in body.smallest_masses_at_contact])
     # NaN, from which no change is small: every body is planned at its first look.
     never = np.full((n, 3), np.nan)
@@ -44,8 +46,9 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     return Flight(
         time=np.full(n, time), planned=np.full(n, time), velocity=never, momentum=np.zeros((n, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
-        touching=np.zeros(n, np.int64), turning=turning, mass=mass, head=np.full(n, -1), stamp=stamp,
-        held=np.zeros(n, np.bool_), fastest_held=np.zeros(1), resolved_speed=np.zeros(1),
+        touching=np.zeros(n, np.int64), turning=turning, slenderness=slenderness, mass=mass,
+        head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
+        resolved_speed=np.zeros(1),
     )  # fmt: skip
 
 
@@ -67,7 +70,10 @@ class LocalEngine:
         self.engine, self.setting, self.time = engine, setting, time
         self.flight = flight_of(engine, bodies, time)
         step = setting.step
-        self.rules = Rules(step.gravity, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin)
+        rate = float(np.linalg.norm(step.rotation))
+        self.rules = Rules(
+            step.gravity, step.rotation, rate, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin
+        )
         self.cells = cells_of(engine.bodies, engine.skin)
         self.record = new_record()
         self.plans: Plans

@@ -163,7 +163,7 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
     predict(bodies, first)
     if second >= 0:
         predict(bodies, second)
-    step = Step(passed, 0.0, rules.gravity, rules.paper_mass)
+    step = Step(passed, 0.0, rules.gravity, rules.rotation, rules.paper_mass)
     rate = force_after(pair, system, step, plans)
     interval, change = 0.0, scaled(-1.0, force)
     moment, other_moment = scaled(-1.0, torque), scaled(-1.0, other_torque)
@@ -228,7 +228,7 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
     if pairs.overlap[pair] == 0.0:
         plans.interval[pair] = 0.0
         if pairs.feature_count[pair] == 0:
-            plan_apart(pair, bodies, pairs, flight, agenda, pairs.wake[pair], now, rules)
+            plan_apart(pair, bodies, pairs, flight, plans, agenda, pairs.wake[pair], now, rules)
             return True
         approach = approach_of(pair, bodies, cores, planes, pairs, flight, rules)
         if approach.gap > 0.0:

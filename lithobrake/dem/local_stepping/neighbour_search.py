@@ -149,7 +149,7 @@ def is_near(
     if not flight.held[other]:
         time = now - flight.time[other]
         turned = bodies.turning_radius[other] * spin_bound(bodies, flight, other)
-        turned = time * (turned + time * turning_rate(bodies, flight, other))
+        turned = time * (turned + time * turning_rate(bodies, flight, other, rules))
     shapes = (bodies.shape[parts[0]], bodies.shape[parts[1]])
     return are_near(bodies, cores, scratch, members, shapes, apart, rules.skin + turned)
 

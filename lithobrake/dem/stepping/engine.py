@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from lithobrake.dem.bodies.arrays import DAMPING, Bodies, Cores, Laws, Pairs, Period, Planes, Reactions, Step
-from lithobrake.dem.bodies.motion import write_matrices, write_rotations
+from lithobrake.dem.bodies.orientation import write_matrices, write_rotations
 from lithobrake.dem.bodies.rigid_body import AT_CENTRE, Offset, PlacedPart, Plane, RigidBody
 from lithobrake.dem.bodies.shape import Polyhedron, Shape
 from lithobrake.dem.bodies.vectors import refuse_short_period

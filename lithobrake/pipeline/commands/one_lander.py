@@ -30,7 +30,16 @@ from lithobrake.touchdown.touchdown_model import landing, touchdown_version
 from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.quantities import GROUND, GROUND_KIND, GROUND_SIZE, JOURNEY, TIME_LEFT, TOUCHDOWN, Row
+from lithobrake.vocabulary.quantities import (
+    GROUND,
+    GROUND_KIND,
+    GROUND_SIZE,
+    JOURNEY,
+    ROTATION,
+    TIME_LEFT,
+    TOUCHDOWN,
+    Row,
+)
 
 if TYPE_CHECKING:
     from lithobrake.results.motions import MovingBodies
@@ -98,7 +107,7 @@ def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -
     design = DrawnDesign(study)
     Soils(design.site).refuse()
     values = _values(design, number)
-    own = (*OF_JOURNEYS, GROUND_KIND, GROUND_SIZE, *(GROUND if study.has_local_ground else ()))
+    own = (*OF_JOURNEYS, GROUND_KIND, GROUND_SIZE, *((*GROUND, *ROTATION) if study.has_local_ground else ()))
     free = {key: value for key, value in values.items() if key not in own}
     changed: dict[str, float] = {}
     for key, value in (_changed(change, free) for change in changes):

@@ -23,6 +23,7 @@ from lithobrake.vocabulary.quantities import (
     IMPACT_INCIDENCE,
     IMPACT_SPEED,
     ORIENTATION,
+    ROTATION,
     SPIN,
     Row,
 )
@@ -200,6 +201,14 @@ def ground_inputs(acceleration: Sequence[float], azimuth_deg: float, friction: f
     return dict(zip(GROUND, (sign * strength, math.degrees(tilt), downhill % 360.0), strict=True))
 
 
+def rotation_inputs(rotation: Sequence[float], azimuth_deg: float) -> Row:
+    """The rotation of the ground [rad/s], along the incoming horizontal velocity, to its left and outward, as inputs of
+    its bed, in whose frame that velocity has an azimuth.
+    """
+    turned = about_z(math.radians(azimuth_deg)).apply(rotation).tolist()
+    return dict(zip(ROTATION, turned, strict=True))
+
+
 def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
     """The first touchdowns of landers, numbered from `first` on, each on the soil of where it is.
 
@@ -224,10 +233,14 @@ def on_ground(
     mass: np.ndarray,
     spin_period: np.ndarray,
 ) -> list[Row]:
-    """Touchdowns under the acceleration at their origins [m], [count, 3], in frames with these axes, [count, 3, 3]."""
+    """Touchdowns on the turning ground at their origins [m], [count, 3], in frames with these axes, [count, 3, 3]."""
+    from lithobrake.smallbody.rotation import ground_spin
+
     local = np.einsum("nij,nj->ni", axes, body.felt(origin, time, mass, spin_period))
+    turns = np.einsum("nij,nj->ni", axes, ground_spin(body.rotation, time, spin_period))
     return [
-        row | ground_inputs(one, row[IMPACT_AZIMUTH], friction_of(row)) for row, one in zip(rows, local, strict=True)
+        row | ground_inputs(one, row[IMPACT_AZIMUTH], friction_of(row)) | rotation_inputs(turn, row[IMPACT_AZIMUTH])
+        for row, one, turn in zip(rows, local, turns, strict=True)
     ]
 
 

@@ -76,7 +76,8 @@ class LandingRows:
     def _ground(self, impacts: ImpactStates, place: int, row: Row, azimuth: float) -> Row:
         if not self.design.study.has_local_ground:
             return {}
-        return arrivals.ground_inputs(impacts.acceleration[place].tolist(), azimuth, arrivals.friction_of(row))
+        met = arrivals.ground_inputs(impacts.acceleration[place].tolist(), azimuth, arrivals.friction_of(row))
+        return met | arrivals.rotation_inputs(impacts.rotation[place].tolist(), azimuth)
 
     def _any_attitude(self, journey: int, number: int) -> Rotation:
         """A lander that has bounced tumbles for minutes before it comes down again."""

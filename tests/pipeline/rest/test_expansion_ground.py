@@ -190,7 +190,7 @@ def states(speed: list[float], outward: float = -1e-5, spin: float = 0.0) -> Imp
     spins, pull = np.tile([0.0, spin, 0.0], (count, 1)), np.tile([0.0, 0.0, outward], (count, 1))
     return ImpactStates(
         np.zeros(count, dtype=np.int64), number, np.zeros((count, 3)), axes, np.array(speed), angle, angle, spins,
-        [None] * count, pull, nothing, nothing, nothing, nothing, nothing,
+        [None] * count, pull, np.zeros((count, 3)), nothing, nothing, nothing, nothing, nothing,
     )  # fmt: skip
 
 
