@@ -15,7 +15,7 @@ from lithobrake.dem.law.restitution import contact_options
 from lithobrake.dem.local_stepping.agenda import FEWEST_STEPS
 from lithobrake.dem.local_stepping.local_engine import Setting
 from lithobrake.dem.observables import Observables
-from lithobrake.dem.stepping.engine import rotation_matrices
+from lithobrake.dem.stepping.engine import Engine, rotation_matrices
 from lithobrake.dem.stepping.time_loop import (
     DIVERGED,
     FIRST_CONTACT,
@@ -38,6 +38,8 @@ from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.field_errors import FieldError, field_number
 from lithobrake.vocabulary.material_properties import Material
 
+# Of the contact radius R*: a deeper dent is no small overlap, on which Hertz' law rests.
+DEEPEST_DENT = 0.15
 # More than any machine has cores.
 MOST_THREADS = 1024
 
@@ -214,7 +216,7 @@ class World(Observables):
         self.time += taken * self.time_step
         if reason in (STEP_TOO_LARGE, DIVERGED):
             self._refuse(reason)
-        self._refuse_buried()
+        self._refuse_deep()
 
     def run_locally(
         self, duration: float, steps_per_contact: float, *, resolved_speed: float = 0.0, held_speed: float = 0.0,
@@ -259,7 +261,7 @@ class World(Observables):
         if not local.run(duration):
             self._refuse(DIVERGED)
         self.time = local.time
-        self._refuse_buried()
+        self._refuse_deep()
 
     def _refuse_drag_in_turning_frame(self) -> None:
         if self.drag > 0.0 and self.rotation.any():
@@ -267,10 +269,14 @@ class World(Observables):
                 "World.drag", self.drag, "is 0 where World.rotation is not", "settle without a rotation", "1/s"
             )
 
-    def _refuse_buried(self) -> None:
-        """Raise FloatingPointError for a body, but the watched one, that lies wholly behind a plane which meets it."""
+    def _refuse_deep(self) -> None:
+        """Raise FloatingPointError for a dent deeper than its law holds for, and for a body, but the watched one, that
+        lies wholly behind a plane which meets it.
+        """
         engine = self._state.engine
         assert engine is not None
+        if engine.laws.yield_pressure.any():
+            self._refuse_deep_dent(engine)
         depth = engine.planes.offset[:, None] - engine.planes.normal @ self._state.motion["position"].T
         buried = engine.planes.meets & (depth > engine.bodies.bounding_radius)
         # Who watches a body sees by itself where that is.
@@ -281,6 +287,18 @@ class World(Observables):
             raise FloatingPointError(
                 f"body {body} lies {depth[plane, body]:.3g} m behind plane {plane} at t = {self.time:.6g} s, and no "
                 "contact is deeper than its body; take a stiffer material (young_modulus), or a lighter body"
+            )
+
+    def _refuse_deep_dent(self, engine: Engine) -> None:
+        bodies, pairs = engine.bodies, engine.pairs
+        curvature = bodies.curvature[pairs.first_part]
+        curvature = curvature + np.where(pairs.second >= 0, bodies.curvature[pairs.second_part], 0.0)
+        depth = pairs.deepest * curvature
+        if depth.max(initial=0.0) > DEEPEST_DENT:
+            k = int(np.argmax(depth))
+            raise FloatingPointError(
+                f"a contact of body {pairs.first[k]} has yielded by {pairs.deepest[k]:.3g} m at t = {self.time:.6g} s, "
+                f"{depth[k]:.2g} of its radius; the law holds up to {DEEPEST_DENT:g}: raise yield_strength"
             )
 
     def _refuse(self, reason: int) -> None:

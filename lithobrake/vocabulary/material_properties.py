@@ -84,6 +84,10 @@ class Material:
     while they last, not beyond. Source: [Derjaguin-1975]. Lunar soil has, by [Perko-2001], a pull
     of 0.036 S^2 R* newtons, S the cleanliness from 0 to 1: a surface energy of 0.0029 S^2 J/m2.
 
+    yield_strength [Pa] >= 0 and restitution_speed [m/s] >= 0: restitution that falls with speed, by yielding or as of a
+    viscoelastic solid that has its restitution at this speed; 0: none of it. Source: [Thornton-1998],
+    [Brilliantov-1996].
+
     rough: contacts have its friction, whatever the other material and the rule for pairs; of two, the larger.
     """
 
@@ -124,6 +128,19 @@ class Material:
         "Pull of a contact in proportion to its radius R*: 4 pi surface_energy R*. For clean grains of lunar soil it "
         "is 0.0029.",
         "law/hertz_spring", at_least=0.0, is_shared=True, default=0.0,
+    )  # fmt: skip
+    yield_strength: float = _property(
+        "Pa", "yield strength",
+        "Strength at which contacts yield: above some speed the restitution falls, in the end as speed^-1/4. Of two "
+        "materials the weaker counts. 0: contacts stay elastic.",
+        "law/yielding", at_least=0.0, default=0.0,
+    )  # fmt: skip
+    restitution_speed: float = _property(
+        "m/s", "speed of the restitution",
+        "Speed at which a contact has the given restitution; below, it loses less, and above, more: viscoelastic, "
+        "1 - restitution as speed^1/5 at first. Of two materials the larger counts. 0: the restitution is the same at "
+        "all speeds.",
+        "law/restitution", at_least=0.0, default=0.0,
     )  # fmt: skip
     rough: bool = False
 

@@ -91,7 +91,8 @@ class Pairs(NamedTuple):
     first_part: Integers  # [pair_count], part of the first
     second_part: Integers  # [pair_count], part of the second; of a plane as second
     wake: Floats  # [pair_count], m: its list of features serves until the travels of both add up to this
-    overlap: Floats  # [pair_count], m, effective; 0 where apart
+    overlap: Floats  # [pair_count], m, effective, and elastic where it has yielded; 0 where apart
+    deepest: Floats  # [pair_count], m, largest overlap since they touched, of those that yield
     normal: Floats  # [pair_count, 3], unit, from first to second
     point: Floats  # [pair_count, 3], centre of pressure, at the image of the first
     normal_force: Floats  # [pair_count], N, less cohesion
@@ -124,6 +125,8 @@ class Laws(NamedTuple):
     spinning_friction: Floats
     cohesion_force: Floats  # N
     cohesion_line: Floats  # N/m, cohesion over contact radius
+    yield_pressure: Floats  # Pa, at the middle of a contact; 0: it does not yield
+    viscosity: Floats  # see PairLaw
 
 
 class Partition(NamedTuple):

@@ -15,6 +15,7 @@ from lithobrake.dem.law.hertz_spring import ContactSprings, contact_springs, nor
 from lithobrake.dem.law.restitution import law_between
 from lithobrake.dem.law.rolling_resistance import resist_rolling
 from lithobrake.dem.law.tangential_spring import stored
+from lithobrake.dem.law.yielding import ElasticPart, yield_to
 from lithobrake.dem.narrow_phase.contact_patch import Contact, find_contact
 from lithobrake.dem.narrow_phase.patch_energy import patch_tilt_stiffness
 from lithobrake.dem.narrow_phase.scratch import System
@@ -42,7 +43,14 @@ def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
     whole_mass = contact.through_centroids or step.paper_mass
     motion = relative_motion(pair, bodies, pairs, point, normal, whole_mass)
     law = law_between(pair, bodies, planes, pairs, laws)
-    springs = contact_springs(law, contact.overlap, motion)
+    elastic = ElasticPart(contact.overlap, 1.0 / motion.curvature)
+    if law.yield_pressure > 0.0:
+        elastic = yield_to(pair, pairs, contact.overlap, elastic.radius, law)
+        if elastic.overlap <= 0.0:
+            let_go(pair, pairs)
+            return 0.0
+        contact = Contact(contact.points, elastic.overlap, contact.point, contact.normal, contact.through_centroids)
+    springs = contact_springs(law, elastic.overlap, elastic.radius, motion)
     load = normal_force(pair, bodies, pairs, patch, contact, motion, springs, time_step)
     pairs.lost[pair, DAMPING] += load.damped
     tangential = friction_force(pair, pairs, normal, law, motion, springs, load.repulsion, time_step)
@@ -60,7 +68,8 @@ def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
     # Last, as friction and rolling turn their springs from the normal that is kept of the step before.
     record_contact(pair, pairs, contact, springs, tangential, load.total)
     # The slope of D^(3/2) is 1.5 times its secant; above half of critical damping the dashpot is the faster of the two.
-    return 1.5 * springs.secant * motion.inverse_mass * max(1.0, 2.0 * law.damping_ratio) ** 2
+    damping = springs.dashpot * (motion.inverse_mass / (1.25 * springs.secant)) ** 0.5
+    return 1.5 * springs.secant * motion.inverse_mass * max(1.0, damping) ** 2
 
 
 @kernel
@@ -106,7 +115,18 @@ def record_contact(
 
 @kernel
 def end_contact(pair: int, pairs: Pairs) -> None:
-    """End a contact, if there was one: the springs let go. Writes to pairs."""
+    """End a contact, if there was one, of two that are apart: the springs let go, and no dent is left to fill.
+
+    Writes to pairs.
+    """
+    if pairs.deepest[pair] > 0.0:
+        pairs.deepest[pair] = 0.0
+    let_go(pair, pairs)
+
+
+@kernel
+def let_go(pair: int, pairs: Pairs) -> None:
+    """Let go the springs of a contact, if there was one. Writes to pairs."""
     # Most neighbours are apart and stay so: nothing is written for them, and their cache lines stay clean.
     if pairs.overlap[pair] == 0.0:
         return

@@ -29,15 +29,24 @@ class ContactSprings(NamedTuple):
 
 
 @kernel
-def contact_springs(law: PairLaw, overlap: float, motion: RelativeMotion) -> ContactSprings:
-    """Return the springs and the dashpots of two materials at an overlap [m]."""
-    radius = 1.0 / motion.curvature
-    # The root is taken of the product: a length scaled by a power of two then scales every bit.
-    root = (overlap * radius) ** 0.5
-    secant = 4.0 / 3.0 * law.young_modulus * root
+def dashpot_along(law: PairLaw, secant: float, inverse_mass: float, radius: float) -> float:
+    """Return the dashpot along the normal [N s/m] of a contact of a secant [N/m], a mass [kg] and a radius R* [m]."""
+    if law.viscosity > 0.0:
+        # Proportional to D^(1/2): the loss grows with the fifth root of the speed.
+        return law.viscosity * secant * (inverse_mass * radius**0.5) ** -0.4
     # With 5/4 of the secant, and so proportional to D^(1/4), the collision is a linear oscillator in a time of its own,
     # and the restitution the same at all speeds (restitution.py).
-    dashpot = 2.0 * law.damping_ratio * (1.25 * secant * (1.0 / motion.inverse_mass)) ** 0.5
+    return 2.0 * law.damping_ratio * (1.25 * secant * (1.0 / inverse_mass)) ** 0.5
+
+
+@kernel
+def contact_springs(law: PairLaw, overlap: float, flattened: float, motion: RelativeMotion) -> ContactSprings:
+    """Return the springs and dashpots of two materials at an elastic overlap [m] on a contact of a radius R* [m]."""
+    radius = 1.0 / motion.curvature
+    # The root is taken of the product: a length scaled by a power of two then scales every bit.
+    root = (overlap * flattened) ** 0.5
+    secant = 4.0 / 3.0 * law.young_modulus * root
+    dashpot = dashpot_along(law, secant, motion.inverse_mass, radius)
     return ContactSprings(
         secant, secant * overlap, 8.0 * law.shear_modulus * root, dashpot, dashpot * law.shear_damping,
         law.cohesion_force + law.cohesion_line * radius, radius,

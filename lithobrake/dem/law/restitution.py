@@ -1,9 +1,11 @@
 """What two materials have in common, and the damping ratio from which their restitution comes out."""
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from lithobrake.compilation.compiled import kernel
@@ -15,6 +17,8 @@ SHEAR_MODULUS_RULES = ("mindlin", "paper")
 PAIR_RULES = ("smaller", "mean", "geometric")
 DAMPING_MASSES = ("contact", "paper")
 TANGENTIAL_DASHPOTS = ("mindlin", "none")
+# Pressure at the middle of a contact over the strength of what yields there. Source: [Johnson-1985], chapter 6.
+YIELD_PRESSURE = 1.6
 
 
 def restitution_of(damping_ratio: float) -> float:
@@ -52,6 +56,47 @@ def damping_ratio_of(restitution: float) -> float:
     return float(brentq(lambda zeta: restitution_of(zeta) - restitution, 0.0, upper, xtol=1e-15, rtol=1e-14))
 
 
+def viscous_restitution_of(viscosity: float) -> float:
+    """Return the restitution of a viscoelastic Hertz contact without attraction.
+
+    viscosity: A (K / m)^(2/5) v^(1/5) of a force K (D^(3/2) + 3/2 A D^(1/2) dD/dt) at a speed v. With overlaps in units
+    of (m v^2 / K)^(2/5) and speeds in units of v, x'' = -x^(3/2) - 3/2 viscosity x^(1/2) x', until the force turns
+    negative.
+    Source: [Brilliantov-1996]; the end of the contact of [Schwager-2008].
+    """
+
+    def moving(time: float, state: Sequence[float]) -> tuple[float, float]:
+        x, speed = max(state[0], 0.0), state[1]
+        return speed, -math.sqrt(x) * (x + 1.5 * viscosity * speed)
+
+    def lets_go(time: float, state: Sequence[float]) -> float:
+        return float(state[0] + 1.5 * viscosity * state[1])
+
+    lets_go.terminal, lets_go.direction = True, -1  # type: ignore[attr-defined]
+    begin = 1e-9
+    found = solve_ivp(moving, (0.0, 1e6), (begin, 1.0), events=lets_go, rtol=1e-10, atol=1e-13, method="LSODA")
+    return -float(found.y[1, -1])
+
+
+@cache
+def viscosity_ratio_of(restitution: float) -> float:
+    """Return the viscosity from which this restitution comes out."""
+    if restitution == 1.0:
+        return 0.0
+    upper = 1.0
+    while viscous_restitution_of(upper) > restitution:
+        upper *= 2.0
+    return float(brentq(lambda one: viscous_restitution_of(one) - restitution, 0.0, upper, xtol=1e-9, rtol=1e-9))
+
+
+def viscosity(young_modulus: float, restitution: float, speed: float) -> float:
+    """Return PairLaw.viscosity of an effective modulus [Pa] whose restitution is that of a speed [m/s]; 0: of all."""
+    if speed == 0.0:
+        return 0.0
+    stiffness = 4.0 / 3.0 * young_modulus
+    return 1.5 * viscosity_ratio_of(restitution) * float(speed**-0.2 * stiffness**-0.4)
+
+
 class PairLaw(NamedTuple):
     young_modulus: float  # effective, Pa
     shear_modulus: float  # effective, Pa
@@ -62,6 +107,10 @@ class PairLaw(NamedTuple):
     spinning_friction: float
     cohesion_force: float  # N
     cohesion_line: float  # N/m, to be multiplied by the contact radius
+    yield_pressure: float  # Pa, at the middle of a contact; 0: it does not yield
+    # Dashpot over secant [s] of a viscoelastic contact, over (mass / root of the contact radius)^0.4; 0: the damping
+    # ratio holds at all speeds.
+    viscosity: float
 
 
 def contact_options(
@@ -104,6 +153,8 @@ def pair_law(a: Material, b: Material, shear_modulus_rule: str = "mindlin", pair
         young, shear, damping_ratio_of(shared["restitution"]), 2.0 * math.sqrt(shear / young), shared["friction"],
         shared["rolling_friction"], shared["spinning_friction"], shared["cohesion_force"],
         4.0 * math.pi * shared["surface_energy"],
+        YIELD_PRESSURE * min((m.yield_strength for m in (a, b) if m.yield_strength), default=0.0),
+        viscosity(young, shared["restitution"], max(a.restitution_speed, b.restitution_speed)),
     )  # fmt: skip
 
 
@@ -115,4 +166,5 @@ def law_between(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: L
         laws.young_modulus[here, there], laws.shear_modulus[here, there], laws.damping_ratio[here, there],
         laws.shear_damping[here, there], laws.friction[here, there], laws.rolling_friction[here, there],
         laws.spinning_friction[here, there], laws.cohesion_force[here, there], laws.cohesion_line[here, there],
+        laws.yield_pressure[here, there], laws.viscosity[here, there],
     )  # fmt: skip

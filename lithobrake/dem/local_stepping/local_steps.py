@@ -228,12 +228,15 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
     if pairs.overlap[pair] == 0.0:
         plans.interval[pair] = 0.0
         if pairs.feature_count[pair] == 0:
+            pairs.deepest[pair] = 0.0
             plan_apart(pair, bodies, pairs, flight, plans, agenda, pairs.wake[pair], now, rules)
             return True
-        approach = approach_of(pair, bodies, cores, planes, pairs, flight, rules)
-        if approach.gap > 0.0:
-            plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
-            return True
+        # In a dent the two are not apart: the law says when they are.
+        if pairs.deepest[pair] == 0.0:
+            approach = approach_of(pair, bodies, cores, planes, pairs, flight, rules)
+            if approach.gap > 0.0:
+                plan_approach(pair, bodies, pairs, flight, plans, agenda, approach, now, rules)
+                return True
     touched = plans.interval[pair] > 0.0
     interval = touch(pair, system, schedule, passed, rules)
     if interval > 0.0:

@@ -129,7 +129,7 @@ def pairs_of_parts(part_start: Integers, first: Integers, second: Integers) -> N
 def new_pairs(between: Neighbours) -> Pairs:
     n = len(between.first)
     return Pairs(
-        *between, wake=np.zeros(n), overlap=np.zeros(n), normal=np.zeros((n, 3)),
+        *between, wake=np.zeros(n), overlap=np.zeros(n), deepest=np.zeros(n), normal=np.zeros((n, 3)),
         point=np.zeros((n, 3)), normal_force=np.zeros(n), elastic_force=np.zeros(n), cohesion=np.zeros(n),
         spring=np.zeros((n, 3)), tangential_force=np.zeros((n, 3)), tangential_stiffness=np.zeros(n),
         twist=np.zeros(n), twist_stiffness=np.zeros(n), roll=np.zeros((n, 3)), roll_stiffness=np.zeros(n),

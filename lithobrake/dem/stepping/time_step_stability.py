@@ -8,10 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from lithobrake.compilation.compiled import kernel, large_kernel
-from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes, Step
+from lithobrake.dem.bodies.arrays import Bodies, Laws, Pairs, Planes, Step, curvature_of
 from lithobrake.dem.bodies.rigid_body import Plane, RigidBody
 from lithobrake.dem.bodies.vectors import arm_to, dot, minus, plus, row, times
 from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_mass_at
+from lithobrake.dem.law.hertz_spring import dashpot_along
 from lithobrake.dem.law.restitution import PairLaw, law_between, pair_law
 from lithobrake.vocabulary.array_types import Floats, Vector
 from lithobrake.vocabulary.field_errors import FieldError, field_number
@@ -192,10 +193,15 @@ def inverse_masses(bodies: Bodies, body: int, arm: Vector, normal: Vector) -> tu
 
 
 @kernel
-def contact_stiffness(pair: int, pairs: Pairs, inverse_mass: float, couple: float, law: PairLaw) -> ContactStiffness:
-    """Return how a pair that touches holds its bodies; inverse_mass and couple are what both show it together."""
+def contact_stiffness(
+    pair: int, pairs: Pairs, inverse_mass: float, couple: float, radius: float, law: PairLaw
+) -> ContactStiffness:
+    """Return how a pair that touches holds its bodies; inverse_mass and couple are what both show it together.
+
+    radius: R* [m].
+    """
     secant = pairs.elastic_force[pair] / pairs.overlap[pair]
-    dashpot = 2.0 * law.damping_ratio * (1.25 * secant / inverse_mass) ** 0.5
+    dashpot = dashpot_along(law, secant, inverse_mass, radius)
     tilt, roll = pairs.tilt_stiffness[pair], pairs.roll_stiffness[pair]
     # The weights of tilting are at least 1.5 + 7 times those of its dashpot.
     tilt_dashpot = dashpot * tilt / (8.5 * secant) + 2.0 * law.damping_ratio * (roll / couple) ** 0.5
@@ -229,7 +235,8 @@ def pair_rates(pair: int, bodies: Bodies, planes: Planes, pairs: Pairs, laws: La
         theirs = inverse_masses(bodies, second, arm_to(bodies, second, point), normal)
         inverse_mass += bodies.inverse_mass[second] if paper_mass else theirs[0]
     law = law_between(pair, bodies, planes, pairs, laws)
-    stiffness = contact_stiffness(pair, pairs, inverse_mass, ours[2] + theirs[2], law)
+    radius = 1.0 / curvature_of(pair, bodies, pairs)
+    stiffness = contact_stiffness(pair, pairs, inverse_mass, ours[2] + theirs[2], radius, law)
     return ContactRates(stiffness, ours, theirs)
 
 
