@@ -270,6 +270,23 @@ def journey_problems(study: Study) -> Iterator[str]:
             f"journey.count is {journey.count} and design.run_count {design.run_count}; both are the number of "
             "landers: keep one"
         )
+    yield from _gravity_problems(study)
+    if journey.touchdowns == 1:
+        return
+    if not study.has_local_ground:
+        yield (
+            f"surface.gravity is {show(study.surface.gravity)}; later touchdowns take the acceleration of where they "
+            "are: leave it out, or set journey.touchdowns = 1"
+        )
+    if study.has_soil and study.bed.sides != "periodic":
+        yield (
+            'bed.sides is "walls", and landers that are followed beyond the first touchdown need ground without an '
+            'edge; set bed.sides = "periodic", or journey.touchdowns = 1'
+        )
+
+
+def _gravity_problems(study: Study) -> Iterator[str]:
+    """What is given of the ground of a touchdown beside the body's own."""
     if not study.has_local_ground and study.delivery is not None and study.delivery.is_flown:
         yield (
             f"surface.gravity is {show(study.surface.gravity)}, and landers that fly to the ground from a state take "
@@ -289,16 +306,4 @@ def journey_problems(study: Study) -> Iterator[str]:
         yield (
             'surface.rotation_x, rotation_y or rotation_z is given; with surface.gravity = "site" the ground turns as '
             "the body; leave it out, or give surface.gravity a number"
-        )
-    if journey.touchdowns == 1:
-        return
-    if not study.has_local_ground:
-        yield (
-            f"surface.gravity is {show(study.surface.gravity)}; later touchdowns take the acceleration of where they "
-            "are: leave it out, or set journey.touchdowns = 1"
-        )
-    if study.has_soil and study.bed.sides != "periodic":
-        yield (
-            'bed.sides is "walls", and landers that are followed beyond the first touchdown need ground without an '
-            'edge; set bed.sides = "periodic", or journey.touchdowns = 1'
         )

@@ -47,7 +47,7 @@ def contact_force(pair: int, system: System, step: Step, kept: bool) -> float:
     if law.yield_pressure > 0.0:
         elastic = yield_to(pair, pairs, contact.overlap, elastic.radius, law)
         if elastic.overlap <= 0.0:
-            let_go(pair, pairs)
+            release_springs(pair, pairs)
             return 0.0
         contact = Contact(contact.points, elastic.overlap, contact.point, contact.normal, contact.through_centroids)
     springs = contact_springs(law, elastic.overlap, elastic.radius, motion)
@@ -121,11 +121,11 @@ def end_contact(pair: int, pairs: Pairs) -> None:
     """
     if pairs.deepest[pair] > 0.0:
         pairs.deepest[pair] = 0.0
-    let_go(pair, pairs)
+    release_springs(pair, pairs)
 
 
 @kernel
-def let_go(pair: int, pairs: Pairs) -> None:
+def release_springs(pair: int, pairs: Pairs) -> None:
     """Let go the springs of a contact, if there was one. Writes to pairs."""
     # Most neighbours are apart and stay so: nothing is written for them, and their cache lines stay clean.
     if pairs.overlap[pair] == 0.0:
