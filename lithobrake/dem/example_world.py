@@ -27,7 +27,7 @@ def step_together() -> None:
     """Take a step that all contacts share: so a bed settles, and tells by its forces whether it rests."""
     world = two_grains((1.0, 2.5))
     # The large kernel first, and then those that list neighbours: another process may have them by then.
-    engine = world._state._new_engine(world._state.motion, world._state.pairs, world._state.lost)
+    engine = world._state.new_engine(world._state.motion, world._state.pairs, world._state.lost)
     engine.advance(1, world._step(0.0), NOTHING_WATCHED)
     world.run(steps=1)
     # Settling asks for the largest step, the watch on a lander for spins.

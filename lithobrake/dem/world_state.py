@@ -100,12 +100,13 @@ class WorldState:
         return self.engine
 
     def _ready(self, motion: dict[str, Floats], pairs: Pairs, lost: Floats, step: Step) -> Engine:
-        engine = self._new_engine(motion, pairs, lost)
+        engine = self.new_engine(motion, pairs, lost)
         engine.list_neighbours()
         engine.advance(1, step._replace(time_step=0.0), NOTHING_WATCHED)
         return engine
 
-    def _new_engine(self, motion: dict[str, Floats], pairs: Pairs, lost: Floats) -> Engine:
+    def new_engine(self, motion: dict[str, Floats], pairs: Pairs, lost: Floats) -> Engine:
+        """Return an engine on these arrays that has taken no step."""
         return Engine(
             self.bodies, self.planes, self.options, motion, pairs, lost, self.watch_record, self.thread_count,
             self.period,
@@ -115,7 +116,7 @@ class WorldState:
         """Return the engine that moves each contact at its own steps, from an instant [s] on."""
         if self.local is None or self.local.setting != setting or self.local.time != time:
             self._step_together()
-            self.engine = self.engine or self._new_engine(self.motion, self.pairs, self.lost)
+            self.engine = self.engine or self.new_engine(self.motion, self.pairs, self.lost)
             self.local = LocalEngine(self.engine, self.bodies, setting, time)
             # It finds neighbours and contacts by itself, at its own reach, before anybody is held.
             self.local.run(0.0)
@@ -169,8 +170,8 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
     """Write a state, gravity, rotation and drag of its steps, and a clock of plain numbers to an HDF5 file."""
     import h5py
 
-    # A file holds no plans of contacts at steps of their own, so those go back to common steps first.
-    engine = state.stepping_together(step)
+    local = state.local
+    engine = state.stepping_together(step) if local is None else local.engine
     parts = parts_of(state.bodies)
     shapes, materials = list({id(part.shape): part.shape for part in parts}.values()), materials_of(parts, state.planes)
     number = {id(shape): k for k, shape in enumerate(shapes)}
@@ -198,6 +199,10 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
             file[f"plane/{name}"] = getattr(engine.planes, name)
         for name in engine.pairs._fields:
             file[f"pair/{name}"] = getattr(engine.pairs, name)
+        if local is not None:
+            file.attrs["steps_per_contact"], file.attrs["time"] = local.setting.steps_per_contact, local.time
+            for name, array in local.state.items():
+                file[f"local/{name}"] = array
 
 
 def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dict[str, Any]]:
@@ -220,7 +225,10 @@ def read_checkpoint(path: str | os.PathLike[str]) -> tuple[WorldState, Step, dic
     damping_with_reduced_mass = state.options["damping_mass"] == "paper"
     gravity, rotation = tuple(data["gravity"].tolist()), tuple(data["rotation"].tolist())
     step = Step(0.0, float(attributes["drag"]), gravity, rotation, damping_with_reduced_mass)
-    _restore(state.stepping_together(step), data, float(attributes["skin"]))
+    if "steps_per_contact" in attributes:
+        _resume(state, step, data, attributes)
+    else:
+        _restore(state.stepping_together(step), data, float(attributes["skin"]))
     state.lost[:] = data["lost"]
     return state, step, json.loads(attributes["clock"])
 
@@ -243,6 +251,16 @@ def _add_members(state: WorldState, data: dict[str, Any], attributes: dict[str, 
         meets = None if everything else frozenset(np.flatnonzero(data["plane/meets"][k]).tolist())
         material = materials[data["plane/material"][k]]
         state.planes.append(Plane(data["plane/point"][k], data["plane/normal"][k], material, meets))
+
+
+def _resume(state: WorldState, step: Step, data: dict[str, Any], attributes: dict[str, Any]) -> None:
+    """Go on with contacts at steps of their own, as they were planned."""
+    engine = state.engine = state.new_engine(state.motion, no_pairs(), state.lost)
+    engine.restore({name: data[f"body/{name}"] for name in MOVING}, no_pairs(), float(attributes["skin"]))
+    pairs = no_pairs()._replace(**{name: data[f"pair/{name}"] for name in engine.pairs._fields})
+    setting = Setting(step, float(attributes["steps_per_contact"]), state.watched)
+    kept = {name.removeprefix("local/"): array for name, array in data.items() if name.startswith("local/")}
+    state.local = LocalEngine.resumed(engine, setting, float(attributes["time"]), pairs, kept)
 
 
 def _restore(engine: Engine, data: dict[str, Any], skin: float) -> None:

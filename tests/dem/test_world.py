@@ -11,7 +11,7 @@ import pytest
 
 from lithobrake.dem import Box, ConvexHull, Material, Shape, Sphere, World
 from lithobrake.dem.law.restitution import PAIR_RULES, pair_law
-from lithobrake.dem.local_stepping import cells
+from lithobrake.dem.local_stepping import cells, local_engine
 from lithobrake.dem.stepping.neighbours import neighbouring_pairs
 
 ROCK = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.5, friction=0.5, density=2500.0)
@@ -147,6 +147,57 @@ def test_loaded_world_takes_new_bodies_on_its_planes(tmp_path):
     loaded.add_body(Sphere(0.05), ROCK, (1, 0, 0.06))
     loaded.run(duration=0.3)
     assert loaded.position[1, 2] > 0.04
+
+
+@pytest.mark.parametrize("held_speed", [0.0, 2e-3])
+@pytest.mark.parametrize("widens", [False, True])
+def test_a_heap_that_is_stopped_while_it_falls_goes_on_with_the_same_bits(tmp_path, held_speed, widens, monkeypatch):
+    """At steps of their own: stopped in the middle of collisions, with some held, or without a free slot."""
+    if widens:
+        monkeypatch.setattr(local_engine, "SLOTS", 1)
+
+    def heap():
+        random, world = np.random.default_rng(3), World((0.0, 1e-3, -0.01), period=(1.2, 1.2))
+        world.rotation = (0.0, 1e-3, 2e-3)
+        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROCK)
+        for number in range(12):
+            place = (0.3 * (number % 3), 0.3 * (number // 3 % 2), 0.1 + 0.25 * (number // 6))
+            shape = Sphere(0.06) if number % 4 == 0 else Box((0.1, 0.12, 0.15))
+            world.add_body(shape, ROCK, place, (0.0, 0.0, -0.05), tuple(random.normal(size=4)))
+        world.watch(11)
+        return world
+
+    def go_on(world, duration):
+        world.run_locally(duration, 25.0, held_speed=held_speed, reach=0.3 if held_speed else 0.0)
+        return world
+
+    whole, stopped = heap(), heap()
+    for duration in (2.0, 1.0, 5.0):
+        go_on(whole, duration)
+        go_on(stopped, duration).save(tmp_path / "world.h5")
+        stopped = World.load(tmp_path / "world.h5")
+        go_on(stopped, 0.25)
+        go_on(whole, 0.25)
+    assert len(whole.contacts())
+    for name in ("position", "velocity", "orientation", "angular_momentum"):
+        assert getattr(whole, name).tobytes() == getattr(stopped, name).tobytes(), name
+    assert whole.energy() == stopped.energy()
+    assert whole.watched == stopped.watched
+    assert whole.time == stopped.time
+
+
+def test_saving_changes_nothing(tmp_path):
+    ends = []
+    for saves in (False, True):
+        world = World((0.0, 0.0, -0.01))
+        world.add_plane((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), ROCK)
+        world.add_body(Box((0.1, 0.12, 0.15)), ROCK, (0.0, 0.0, 0.2), (0.01, 0.0, -0.05), spin=(0.1, 0.2, 0.0))
+        for _ in range(10):
+            world.run_locally(1.0, 25.0)
+            if saves:
+                world.save(tmp_path / "world.h5")
+        ends.append(world.position.tobytes() + world.orientation.tobytes())
+    assert ends[0] == ends[1]
 
 
 def test_a_world_of_another_format_version_is_refused_in_a_sentence(tmp_path):

@@ -1,15 +1,15 @@
 """The arrays of a world whose contacts take steps of their own: made from those of an engine, and given back to it."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from lithobrake.dem.bodies.arrays import Pairs, Step
+from lithobrake.dem.bodies.arrays import Pairs, Reactions, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
 from lithobrake.dem.bodies.turning_frame import slenderness_of
 from lithobrake.dem.bodies.vectors import folded
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
-from lithobrake.dem.local_stepping.cells import cells_of
+from lithobrake.dem.local_stepping.cells import Cells, cells_of
 from lithobrake.dem.local_stepping.free_motion import Flight, Rules
 from lithobrake.dem.local_stepping.holding import hold_what_is_slow
 from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally
@@ -24,6 +24,12 @@ NOTHING: Floats = np.zeros(0)
 # Slots for pairs at the start, for each body.
 # A poured bed has some 5 pairs of neighbours a grain.
 SLOTS = 8
+
+
+# What a run has beside its engine.
+TABLES: dict[str, type[Any]] = {
+    "flight": Flight, "plans": Plans, "agenda": Agenda, "cells": Cells, "reactions": Reactions,
+}  # fmt: skip
 
 
 class Setting(NamedTuple):
@@ -67,13 +73,8 @@ class LocalEngine:
     """Moves the bodies of an engine on, each contact at its own steps, until it is given back."""
 
     def __init__(self, engine: Engine, bodies: list[RigidBody], setting: Setting, time: float) -> None:
-        self.engine, self.setting, self.time = engine, setting, time
+        self._begin(engine, setting, time)
         self.flight = flight_of(engine, bodies, time)
-        step = setting.step
-        rate = float(np.linalg.norm(step.rotation))
-        self.rules = Rules(
-            step.gravity, step.rotation, rate, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin
-        )
         self.cells = cells_of(engine.bodies, engine.skin)
         self.record = new_record()
         self.plans: Plans
@@ -84,6 +85,32 @@ class LocalEngine:
         count = len(engine.pairs.first)
         self._take(engine.pairs, max(SLOTS * len(bodies), 2 * count, 1))
         self._enter(np.concatenate([np.full(len(bodies), -np.inf), np.full(count, time)]))
+
+    @classmethod
+    def resumed(cls, engine: Engine, setting: Setting, time: float, pairs: Pairs, state: dict[str, Floats]) -> Self:
+        """Go on from where another one for the same bodies stood at a time [s], with its pairs and state."""
+        local = cls.__new__(cls)
+        local._begin(engine, setting, time)
+        engine.pairs, engine.scratch = pairs, engine.scratch_of(pairs)
+        for name, table in TABLES.items():
+            setattr(local, name, table(**{field: state[f"{name}/{field}"] for field in table._fields}))
+        local.record = state["record"]
+        return local
+
+    def _begin(self, engine: Engine, setting: Setting, time: float) -> None:
+        self.engine, self.setting, self.time = engine, setting, time
+        step = setting.step
+        rate = float(np.linalg.norm(step.rotation))
+        self.rules = Rules(
+            step.gravity, step.rotation, rate, step.drag, step.paper_mass, setting.steps_per_contact, engine.skin
+        )
+
+    @property
+    def state(self) -> dict[str, Floats]:
+        """All that the next look depends on, beside the engine, its pairs and the setting, by name."""
+        tables = {name: getattr(self, name) for name in TABLES}
+        found = {f"{name}/{field}": array for name, table in tables.items() for field, array in table._asdict().items()}
+        return found | {"record": self.record}
 
     @property
     def pairs(self) -> Pairs:
