@@ -27,11 +27,14 @@ SKEWNESS_FACTOR = 1.5
 def regression_terms(inputs: Mapping[str, Distribution], x: ArrayLike) -> tuple[Array, Labels]:
     """Terms of first and second degree at x [run_count, input_count], and the multi-index of each.
 
+    An input of two values has no term of second degree of its own.
+
     Result: terms [run_count, term_count], indices [term_count, input_count]. Each term has mean 0 and variance 1 over
     the law of the inputs, so the mean over the law of any sum of them is 0, without sampling.
     Source: [Xiu-2002], section 3 (orthonormal polynomials of the Askey scheme).
     """
     indices = multi_index_set(len(inputs), 2)[1:]
+    indices = indices[(indices <= [law.highest_degree for law in inputs.values()]).all(axis=1)]
     return basis_matrix(inputs, indices, points_of(inputs, x)), indices
 
 

@@ -9,7 +9,7 @@ from scipy import stats
 
 from lithobrake.analysis import VarianceShares, chaos_variance, soil_total_effect, variance_shares
 from lithobrake.analysis.confidence import bed_components, numbered_beds
-from lithobrake.chaos import Uniform, sobol_sequence
+from lithobrake.chaos import Empirical, Uniform, sobol_sequence
 from lithobrake.vocabulary.estimate import Estimate
 
 INPUTS = {"friction": Uniform(0.2, 0.9), "restitution": Uniform(0.3, 0.9), "speed": Uniform(0.05, 0.15)}
@@ -267,3 +267,21 @@ def test_runs_that_do_not_fit_together_are_refused(given: dict[str, Any], words:
     runs: dict[str, Any] = {"x": np.zeros((12, 1)), "y": np.arange(12.0), "soil": ["a"]} | given
     with pytest.raises(ValueError, match=words):
         variance_shares({"a": Uniform(-1.0, 1.0)}, runs["x"], runs["y"], np.arange(12) % 3, soil=runs["soil"])
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_kinds_of_ground_are_told_apart_whatever_their_number(count: int) -> None:
+    """Of 24 beds with sizes of their own: what differs by the kind alone is found at the kind, not at the size."""
+    rng = np.random.default_rng(3)
+    bed = np.repeat(np.arange(24), 12)
+    kind, size = np.arange(24) % count, (np.arange(24) // count).astype(float)
+    inputs = {"ground.kind": Empirical(kind.tolist()), "ground.grain_size": Empirical(size.tolist())} | INPUTS
+    u = np.column_stack([one.ppf(rng.random(len(bed))) for one in INPUTS.values()])
+    x = np.column_stack([kind[bed], size[bed], u])
+    y = (kind == count - 1)[bed] + 0.25 * rng.standard_normal(len(bed))
+    found = variance_shares(inputs, x, y, bed, soil=("ground.kind", "ground.grain_size", *SOIL))
+    assert found is not None
+    variance = float(np.var(kind == count - 1))
+    of_kind = variance / (variance + 0.25**2)
+    assert found.soil_by_input["ground.kind"].value == pytest.approx(of_kind, abs=0.06)
+    assert found.soil_by_input["ground.grain_size"].value < 0.06

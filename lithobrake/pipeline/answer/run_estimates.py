@@ -46,8 +46,6 @@ MISSING = "missing"
 PARTS = (*FlightStatus, CAPTURED)
 # Numbers that say what the ground is, the lander's side of its contacts among them; all others say how it arrives.
 SOIL = ("ground.", "grain.", "soil.", "surface.", "solver.inputs.", *(f"lander.{name}" for name in SURFACE_PROPERTIES))
-# Of an input, for terms of first and second degree.
-FEWEST_VALUES = 3
 Inputs = dict[str, tuple["Distribution", np.ndarray]]
 ESTIMATES_FILE, AZIMUTH_OUT = ESTIMATES_FILE, "azimuth_out"
 SPLIT = ("speed_out", "elevation_out", "spin_out", RETURNS)
@@ -200,11 +198,11 @@ def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:
 
 def _ground_inputs(job: Job, runs: DesignRuns) -> Inputs:
     """Kind and grain size of the ground of the beds, with their laws; nothing where there is one ground."""
-    # Terms of second degree tell three kinds apart; of two the grain size tells which it is.
+    # Terms of first and second degree tell up to three kinds apart, whatever their numbers.
     return {
         name: (Empirical(values), runs.inputs[name])
         for name, values in job.design.grounds.numbers.items()
-        if len(np.unique(runs.inputs[name])) >= FEWEST_VALUES
+        if np.ptp(runs.inputs[name]) > 0.0
     }
 
 
