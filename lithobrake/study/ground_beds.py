@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import accumulate
 from typing import Any, NamedTuple
 
@@ -29,19 +29,23 @@ FINEST_IN_LANDERS = 1.0 / 3.0
 MOST_GRAINS = 5000
 # Weights that add up to 1 do so but for the rounding of what a person writes.
 ROUNDING = 1e-6
-DRAWN = ("kind", "size", "ratio")
+# What is drawn of a bed, by names that no kind has.
+DRAWN = KIND, SIZE, RATIO = ("[kind]", "[size]", "[ratio]")
+PACKING = "[packing]"
 # Bodies over which uncertain weights of kinds are averaged.
 BODIES = 4096
 
 
 class BedGround(NamedTuple):
     """The ground of a bed. number: of the kind, from 0, in the order of the file; size, mean diameter of its grains
-    [m]; ratio: of the largest to the smallest; weights: of the kinds on its body, in this order."""
+    [m]; ratio: of the largest to the smallest; pour_friction: with which it was poured, None for that of the grains;
+    weights: of the kinds on its body, in this order."""
 
     kind: str
     number: int
     size: float
     ratio: float
+    pour_friction: float | None = None
     weights: tuple[float, ...] = ()
 
 
@@ -58,22 +62,25 @@ def _draw(study: Study, first: int, count: int) -> list[BedGround]:
 
     assert study.ground is not None
     uncertain = _uncertain_weights(study.ground)
-    uniform = dict.fromkeys([*DRAWN, *uncertain], Uniform(0.0, 1.0))
-    points = sobol_sequence(uniform, count, hashed_seed(study.seed, "ground"), skip=first)
-    return [
-        _drawn(study, kind, size, ratio, dict(zip(uncertain, own, strict=True)))
-        for kind, size, ratio, *own in points.tolist()
-    ]
+    # Beds of a study without packings of its own stay what they were.
+    packed = [PACKING] * any(isinstance(kind.pour_friction, Uncertain) for kind in study.ground.kind.values())
+    names = [*DRAWN, *packed, *uncertain]
+    points = sobol_sequence(
+        dict.fromkeys(names, Uniform(0.0, 1.0)), count, hashed_seed(study.seed, "ground"), skip=first
+    )
+    return [_drawn(study, dict(zip(names, point, strict=True)), uncertain) for point in points.tolist()]
 
 
-def _drawn(study: Study, kind: float, size: float, ratio: float, weights: Mapping[str, float]) -> BedGround:
-    """The ground that numbers between 0 and 1 draw; weights: those of the kinds whose weight is uncertain."""
+def _drawn(study: Study, part: Mapping[str, float], uncertain: Sequence[str]) -> BedGround:
+    """The ground that numbers between 0 and 1 draw; uncertain: the kinds whose weight is."""
     assert study.ground is not None
-    names, own = list(study.ground.kind), _weights(study.ground.kind, weights)
-    number = min(bisect_right(list(accumulate(own)), kind), len(names) - 1)
+    names = list(study.ground.kind)
+    own = _weights(study.ground.kind, {name: part[name] for name in uncertain})
+    number = min(bisect_right(list(accumulate(own)), part[KIND]), len(names) - 1)
     one = study.ground.kind[names[number]]
-    drawn = max(_at(grain_size(study, one), size), finest(study))
-    return BedGround(names[number], number, drawn, _at(one.size_ratio, ratio), own)
+    size = max(_at(grain_size(study, one), part[SIZE]), finest(study))
+    friction = None if one.pour_friction is None else _at(one.pour_friction, part.get(PACKING, 0.5))
+    return BedGround(names[number], number, size, _at(one.size_ratio, part[RATIO]), friction, own)
 
 
 def _uncertain_weights(ground: GroundSection) -> list[str]:
@@ -157,7 +164,8 @@ def typical(study: Study) -> Study:
     name = max(kinds, key=weights.__getitem__)
     number, kind = list(kinds).index(name), kinds[name]
     size = max(median(grain_size(study, kind)), finest(study))
-    return of_ground(study, BedGround(name, number, size, median(kind.size_ratio)))
+    friction = None if kind.pour_friction is None else median(kind.pour_friction)
+    return of_ground(study, BedGround(name, number, size, median(kind.size_ratio), friction))
 
 
 def _bed(study: Study, kind: GroundKind, ground: BedGround) -> BedSection:
@@ -166,7 +174,10 @@ def _bed(study: Study, kind: GroundKind, ground: BedGround) -> BedSection:
     sizes: Constant | Between = Constant(distribution="constant", value=ground.size)
     if ground.ratio > 1.0:
         sizes = Between(distribution="uniform", lower=smallest, upper=ground.ratio * smallest)
-    bed = study.bed.model_copy(update={"diameter": sizes, "boulders": kind.boulders})
+    update: dict[str, Any] = {"diameter": sizes, "boulders": kind.boulders}
+    if ground.pour_friction is not None:
+        update["pour_friction"] = ground.pour_friction
+    bed = study.bed.model_copy(update=update)
     # The number of boulders, on which the width depends, follows from the width.
     for _ in range(2):
         width = math.ceil(1e3 * narrowest_period(study.model_copy(update={"bed": bed}))) / 1e3

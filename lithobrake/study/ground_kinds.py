@@ -34,6 +34,8 @@ class GroundKind(Section):
     size_ratio: Annotated[Scalar, MaybeUncertain("", at_least=1, at_most=20)] = 1.0
     """Largest diameter of the grains of a bed over the smallest; the diameters are uniform between. If uncertain, it is
     sampled once for each bed."""
+    pour_friction: Annotated[Scalar, MaybeUncertain("", at_least=0)] | None = None
+    """Packing of the grains, as bed.pour_friction; if uncertain, it is sampled once for each bed."""
     rock: bool = False
     """Bare rock: blocks far larger than the lander, which their weight holds in place. Its roughness is that of their
     faces and edges."""

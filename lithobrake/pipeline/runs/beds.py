@@ -4,6 +4,7 @@ import logging
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, wait
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -200,13 +201,14 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
     from lithobrake.touchdown import BedRecipe
 
     study = on_ground(study, index)
-    values = study.touchdown_medians()
+    values, friction = study.touchdown_medians(), study.bed.pour_friction
+    material = grain(values)
     return BedRecipe(
         grain_count=study.bed.grain_count,
         sizes=grain_sizes(study),
         cloud_point_count=study.bed.cloud_point_count,
         width=study.bed.width,
-        material=grain(values),
+        material=material if friction is None else replace(material, friction=friction),
         gravity=touchdown_model.acceleration(values, study.bed.settle_gravity or values["surface.gravity"]),
         pour_gravity=study.bed.pour_gravity,
         seed=pour_seed(study, index),

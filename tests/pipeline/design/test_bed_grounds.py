@@ -1,5 +1,6 @@
 """Which bed a lander meets where the ground is unknown, and what a journey on each kind of it is expected to take."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +9,10 @@ import pytest
 
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.planner import plan_of
+from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.study import Study, check_tables, load_tables
+from lithobrake.study import Study, StudyError, check_tables, load_tables
 
 QUICK = Path(__file__).parents[3] / "scenarios" / "quick.toml"
 BEDS, LANDERS = 6, 300
@@ -74,3 +76,32 @@ def test_patches_of_a_body_have_its_own_weights() -> None:
         # 300 draws: within three standard deviations.
         assert found[-1] == pytest.approx(own.weights[1], abs=3.0 * 0.5 / LANDERS**0.5)
     assert max(found) - min(found) > 0.2
+
+
+def test_a_packing_is_drawn_for_each_bed_and_changes_no_other_draw() -> None:
+    plain = {"fine": gravel(0.09, 0.5), "coarse": gravel(0.3, 0.5)}
+    packed = plain | {"fine": gravel(0.09, 0.5) | {"pour_friction": 0.2}}
+    law = {"distribution": "uniform", "lower": 0.1, "upper": 0.9}
+    uncertain = plain | {"fine": gravel(0.09, 0.5) | {"pour_friction": law}}
+    grounds = [DrawnDesign(study(kinds)).grounds.each for kinds in (plain, packed, uncertain)]
+    for without, given in zip(grounds[0], grounds[1], strict=True):
+        assert given == without._replace(pour_friction=0.2 if without.kind == "fine" else None)
+    drawn = [one.pour_friction for one in grounds[2] if one.kind == "fine"]
+    assert len(set(drawn)) == len(drawn) > 1
+    assert all(friction is not None and 0.1 < friction < 0.9 for friction in drawn)
+    assert all(one.pour_friction is None for one in grounds[2] if one.kind == "coarse")
+
+
+def test_a_bed_is_poured_with_the_friction_of_its_packing() -> None:
+    kinds = {"gravel": gravel(0.3) | {"pour_friction": 0.15}}
+    assert bed_recipe(study(kinds), 0).material.friction == 0.15
+    tables = load_tables(QUICK) | {"bed": {"bed_count": BEDS}, "ground": {"kind": {"gravel": gravel(0.3)}}}
+    own = bed_recipe(with_site_gravity(check_tables(tables, QUICK.parent)), 0).material
+    assert own.friction == pytest.approx(0.65)
+    assert replace(own, friction=0.15) == bed_recipe(study(kinds), 0).material
+
+
+@pytest.mark.parametrize("value", [-0.1, {"distribution": "uniform", "lower": -0.2, "upper": 0.3}])
+def test_a_friction_below_zero_is_refused_by_the_key_of_its_kind(value: Any) -> None:
+    with pytest.raises(StudyError, match=r"ground\.kind\.gravel\.pour_friction"):
+        study({"gravel": gravel(0.3) | {"pour_friction": value}})
