@@ -3,7 +3,7 @@
     python validation/fine_ground.py [--sizes SIZE ...] [--work FOLDER]
 
 The finest beds of an unknown ground stand for all finer ground. Here the lander of scenarios/quick.toml meets grains of
-1.3, 2.6, 3.8 and 5 to its longest edge, COUNT landers on BEDS beds each. Writes fine_ground.csv, a line for each size
+1.3, 2.6 and 3.8 to its longest edge, COUNT landers on BEDS beds each. Writes fine_ground.csv, a line for each size
 as it ends; what stands there is not done again.
 """
 
@@ -20,7 +20,7 @@ from lithobrake.results import StudyResults
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, Row, add_row, command_line, read_rows, study_tables
 
-SIZES = (0.18, 0.089, 0.06, 0.045)  # m
+SIZES = (0.18, 0.089, 0.06)  # m
 COUNT, BEDS = 24, 12
 TABLE = Path(__file__).with_suffix(".csv")
 

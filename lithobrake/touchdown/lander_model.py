@@ -1,6 +1,7 @@
 """The lander of a study: its shapes, mass, inertia and materials."""
 
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -37,10 +38,18 @@ def main_shape(section: LanderSection, values: Values) -> "dem.Sphere | dem.Box 
     from lithobrake import dem
 
     if section.edges is not None:
-        return dem.Box(section.edges)
+        return box(section.edges)
     if section.file is not None:
         return dem.read_hull(Path(section.file), section.unit)
     return dem.Sphere(values["lander.diameter"] / 2)
+
+
+@lru_cache(maxsize=64)
+def box(edges: tuple[float, float, float]) -> "dem.Box":
+    """A box of these edges [m], made once: its hull takes longer than all else of a lander."""
+    from lithobrake import dem
+
+    return dem.Box(edges)
 
 
 def lander_part(section: PartSection, surface: Material) -> "dem.Part":

@@ -3,7 +3,7 @@
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Step
 from lithobrake.dem.bodies.orientation import turn_by
-from lithobrake.dem.bodies.turning_frame import coasted, turn_frame, with_frame
+from lithobrake.dem.bodies.turning_frame import coasted, turn_in_frame, with_frame
 from lithobrake.dem.bodies.vectors import add, cross, dot, plus, put, row, scaled, times
 from lithobrake.vocabulary.array_types import Vector
 
@@ -55,10 +55,11 @@ def rotate(bodies: Bodies, step: Step, body: int) -> None:
         spin = times(bodies.inverse_inertia, body, momentum)
     else:
         spin = spin_at_mid_step(bodies, body, momentum, step.time_step)
-    turn_by(bodies, body, spin, step.time_step)
     if turns:
-        turn_frame(bodies, body, step.time_step, step.rotation)
+        turn_in_frame(bodies, body, spin, step.time_step, step.rotation)
         with_frame(bodies, body, -1.0, step.rotation)
+    else:
+        turn_by(bodies, body, spin, step.time_step)
 
 
 @large_kernel

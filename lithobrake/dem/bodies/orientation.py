@@ -85,9 +85,15 @@ def write_inverse_inertia(bodies: Bodies, body: int) -> None:
 def turn_by(bodies: Bodies, body: int, spin: Vector, time: float) -> None:
     """Turn a body by a spin of the world frame [rad/s] for a time [s]. Writes to bodies."""
     q = bodies.quaternion
-    after = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time)
-    q[body, 0], q[body, 1], q[body, 2], q[body, 3] = after
-    write_rotation(after, bodies.rotation[body])
+    stand(bodies, body, turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time))
+    put(bodies.half_spin, body, spin)
+
+
+@kernel
+def stand(bodies: Bodies, body: int, quaternion: Quaternion) -> None:
+    """Stand a body in an orientation. Writes to bodies."""
+    q = bodies.quaternion
+    q[body, 0], q[body, 1], q[body, 2], q[body, 3] = quaternion
+    write_rotation(quaternion, bodies.rotation[body])
     if not bodies.isotropic[body]:
         write_inverse_inertia(bodies, body)
-    put(bodies.half_spin, body, spin)

@@ -8,12 +8,16 @@ import numpy as np
 
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies
-from lithobrake.dem.bodies.orientation import turn_by
-from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled
+from lithobrake.dem.bodies.orientation import stand, turned
+from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled, times
 from lithobrake.vocabulary.array_types import Floats, Vector
 
 # Angle [rad] below which the closed form takes series, whose next terms are below rounding.
 SMALL_ANGLE = 0.25
+# Below this angle [rad] terms of its third power, and of its second in what an acceleration adds, are below rounding.
+TINY_ANGLE = 1e-6
+# Angle [rad] by which the frame turns before the spin of a body is told: of many short ways none alone is.
+TOLD_ANGLE = 1e-6
 
 
 @kernel
@@ -36,10 +40,16 @@ def coasted(velocity: Vector, along: Vector, time: float, rotation: Vector) -> t
     a charge in crossed fields.
     """
     twice = scaled(2.0, rotation)
-    first, second, third, fourth = arc_factors(time * dot(twice, twice) ** 0.5)
     once, bent = cross(twice, velocity), cross(twice, along)
-    again, bent_again = cross(twice, once), cross(twice, bent)
-    square = time * time
+    again, square = cross(twice, once), time * time
+    angle_squared = square * dot(twice, twice)
+    if angle_squared < TINY_ANGLE * TINY_ANGLE:
+        turning = plus(scaled(-time, once), scaled(0.5 * square, minus(again, bent)))
+        half = plus(scaled(-0.5 * time, once), scaled(square / 6.0, minus(again, bent)))
+        way = plus(scaled(time, plus(velocity, half)), scaled(0.5 * square, along))
+        return way, plus(plus(velocity, scaled(time, along)), turning)
+    first, second, third, fourth = arc_factors(angle_squared**0.5)
+    bent_again = cross(twice, bent)
     after = plus(plus(velocity, scaled(time, along)), scaled(-time * first, once))
     after = plus(after, scaled(square * second, minus(again, bent)))
     after = plus(after, scaled(square * time * third, bent_again))
@@ -61,22 +71,41 @@ def bulge(before: Vector, after: Vector, along: Vector, time: float, rate: float
 
 
 @kernel
-def with_frame(bodies: Bodies, body: int, sign: float, rotation: Vector) -> None:
-    """Add the angular momentum that a body has by turning with the frame, as often as `sign` says. Writes to bodies."""
+def inertia_times(bodies: Bodies, body: int, spin: Vector) -> Vector:
+    """Return the angular momentum [kg m2/s] of a body at a spin [rad/s]."""
     m = bodies.inverse_inertia[body]
-    # The inertia times the rotation, from the inverse inertia, which is symmetric, by its cofactors.
+    # From the inverse inertia, which is symmetric, by its cofactors.
     rows = (m[0, 0], m[0, 1], m[0, 2]), (m[0, 1], m[1, 1], m[1, 2]), (m[0, 2], m[1, 2], m[2, 2])
     first, second, third = cross(rows[1], rows[2]), cross(rows[2], rows[0]), cross(rows[0], rows[1])
-    across = plus(plus(scaled(rotation[0], first), scaled(rotation[1], second)), scaled(rotation[2], third))
-    add(bodies.angular_momentum, body, sign / dot(rows[0], first), across)
+    across = plus(plus(scaled(spin[0], first), scaled(spin[1], second)), scaled(spin[2], third))
+    return scaled(1.0 / dot(rows[0], first), across)
 
 
 @kernel
-def turn_frame(bodies: Bodies, body: int, time: float, rotation: Vector) -> None:
-    """Turn the frame under a body that has moved for a time [s] against the stars. Writes to bodies."""
-    spin = row(bodies.half_spin, body)
-    back = scaled(-1.0, rotation)
-    turn_by(bodies, body, back, time)
+def with_frame(bodies: Bodies, body: int, sign: float, rotation: Vector) -> None:
+    """Add the angular momentum that a body has by turning with the frame, as often as `sign` says. Writes to bodies."""
+    add(bodies.angular_momentum, body, sign, inertia_times(bodies, body, rotation))
+
+
+@kernel
+def precess(bodies: Bodies, body: int, time: float, rotation: Vector) -> None:
+    """Tell the spin of a body that the frame has turned for a short time [s], to the first order. Writes to bodies.
+
+    From Euler's equations of L = I (s + w) in the frame, dL/dt = -w x L, with I turning along with the body.
+    """
+    momentum = row(bodies.angular_momentum, body)
+    spin, by_frame = times(bodies.inverse_inertia, body, momentum), inertia_times(bodies, body, rotation)
+    change = plus(cross(plus(momentum, by_frame), rotation), cross(by_frame, spin))
+    change = plus(change, inertia_times(bodies, body, cross(spin, rotation)))
+    add(bodies.angular_momentum, body, time, change)
+
+
+@kernel
+def turn_in_frame(bodies: Bodies, body: int, spin: Vector, time: float, rotation: Vector) -> None:
+    """Turn a body by a spin against the stars [rad/s] for a time [s], and the frame under it. Writes to bodies."""
+    q, back = bodies.quaternion, scaled(-1.0, rotation)
+    among_stars = turned((q[body, 0], q[body, 1], q[body, 2], q[body, 3]), spin, time)
+    stand(bodies, body, turned(among_stars, back, time))
     put(bodies.angular_momentum, body, turned_about(row(bodies.angular_momentum, body), back, time))
     put(bodies.half_spin, body, plus(spin, back))
 

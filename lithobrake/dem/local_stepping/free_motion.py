@@ -7,7 +7,15 @@ import numpy as np
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
 from lithobrake.dem.bodies.orientation import turn_by
-from lithobrake.dem.bodies.turning_frame import bulge, coasted, precession, turn_frame, with_frame
+from lithobrake.dem.bodies.turning_frame import (
+    TOLD_ANGLE,
+    bulge,
+    coasted,
+    precess,
+    precession,
+    turn_in_frame,
+    with_frame,
+)
 from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled, times, way_between
 from lithobrake.dem.narrow_phase.contact_patch import measure_feature, sphere_centres
 from lithobrake.dem.narrow_phase.feature_distance import SPHERES, feature_indices, feature_kind, listed_feature
@@ -35,6 +43,7 @@ class Flight(NamedTuple):
     mass: Floats  # [part_count], kg, smallest that a contact meets
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
     stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
+    told: Floats  # [body_count], s, until when its spin knows how the frame turns
     held: Flags  # [body_count], see holding.py
     fastest_held: Floats  # [1], m/s, speed of its surface with which a held body is let go
     resolved_speed: Floats  # [1], m/s, of collisions that take all steps; slower ones take fewer
@@ -116,6 +125,7 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
         return
     flight.time[body] = now
     if flight.held[body]:
+        flight.told[body] = now
         return
     before, spin = row(bodies.velocity, body), spin_bound(bodies, flight, body)
     along = acceleration_of(bodies, flight, body, rules)
@@ -125,17 +135,20 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
     add(bodies.angular_momentum, body, 1.0, half)
     # In flight, with drag or without, the velocity moves on a straight line, on which its size is largest at an end.
     fastest = max(dot(before, before), dot(after, after)) ** 0.5
+    untold, tells = now - flight.told[body], False
     if rules.rate > 0.0:
         fastest += bulge(before, after, along, time, rules.rate)
-        spin += time * precession(flight.slenderness[body], spin, rules.rate)
-        with_frame(bodies, body, 1.0, rules.rotation)
+        spin += untold * precession(flight.slenderness[body], spin, rules.rate)
+        tells = untold * rules.rate > TOLD_ANGLE
+        if tells:
+            precess(bodies, body, untold - time, rules.rotation)
+            with_frame(bodies, body, 1.0, rules.rotation)
+            flight.told[body] = now
     middle = spin_bound(bodies, flight, body)
     parts = 1 + int((middle + rules.rate) * time / LARGEST_TURN)
     for _ in range(parts):
-        turn_freely(bodies, body, time / parts)
-        if rules.rate > 0.0:
-            turn_frame(bodies, body, time / parts, rules.rotation)
-    if rules.rate > 0.0:
+        turn_freely(bodies, body, time / parts, tells, rules)
+    if tells:
         with_frame(bodies, body, -1.0, rules.rotation)
     add(bodies.angular_momentum, body, 1.0, half)
     spin = max(spin, spin_bound(bodies, flight, body))
@@ -173,13 +186,19 @@ def fall(bodies: Bodies, body: int, before: Vector, time: float, along: Vector, 
 
 
 @kernel
-def turn_freely(bodies: Bodies, body: int, time: float) -> None:
-    """Turn a body freely for a time [s] by the spin at its middle, to the second order. Writes to bodies."""
+def turn_freely(bodies: Bodies, body: int, time: float, among_stars: bool, rules: Rules) -> None:
+    """Turn a body freely for a time [s] by the spin at its middle, to the second order. Writes to bodies.
+
+    among_stars: its angular momentum is that against the stars, under which the frame turns.
+    """
     momentum, spin = row(bodies.angular_momentum, body), spin_of(bodies, body)
     if not bodies.isotropic[body]:
         # Euler's equations: the angular momentum stands still while the body turns under it.
         spin = plus(spin, scaled(0.5 * time, times(bodies.inverse_inertia, body, cross(momentum, spin))))
-    turn_by(bodies, body, spin, time)
+    if among_stars:
+        turn_in_frame(bodies, body, spin, time, rules.rotation)
+    else:
+        turn_by(bodies, body, spin, time)
 
 
 @kernel

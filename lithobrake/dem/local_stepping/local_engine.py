@@ -54,7 +54,7 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
         touching=np.zeros(n, np.int64), turning=turning, slenderness=slenderness, mass=mass,
         head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
-        resolved_speed=np.zeros(1),
+        resolved_speed=np.zeros(1), told=np.full(n, time),
     )  # fmt: skip
 
 

@@ -50,8 +50,9 @@ COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
 REPORT_SECONDS = 15.0  # s: fits, scores, samples, summary and page
-# An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second.
-SPREAD, SPREAD_OF_TOUCHDOWNS = 1.6, 3.0
+# An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second, and
+# of those of journeys, over the beds of a study, by the third.
+SPREAD, SPREAD_OF_TOUCHDOWNS, SPREAD_OF_JOURNEYS = 1.6, 3.0, 2.0
 # So many runs of a study tell how long the others take, to this factor at best.
 RUNS_THAT_TELL, SPREAD_OF_RUNS = 5, 1.15
 BUSY = 0.7  # of the cores: a load above this is other work
@@ -128,28 +129,31 @@ def probe() -> float:
 def expected_seconds(
     site: Site,
     made: Mapping[str, tuple[int, int]],
-    soil: ExpectedSoil | None,
+    soils: Sequence[ExpectedSoil],
     ended: Sequence[Record],
     workers: int | None,
 ) -> dict[str, Span | None]:
     """From and to [s], by what takes it; None where nobody knows.
 
-    made: how many of each are to be made, at least and at most. ended: runs of this study that have. workers: None for
+    made: how many of each are to be made, at least and at most. soils: beds as those of the study, each standing for as
+    many; none with a program of one's own. ended: runs of this study that have. workers: None for
     a cluster, of which nobody knows the pace.
     """
-    cores, pace = min(workers or 1, available_cores()), _pace(made, soil) or 1.0
+    cores, pace = min(workers or 1, available_cores()), _pace(made, soils) or 1.0
     found: dict[str, Span | None] = {}
-    if soil is not None and _engine_works(made) and not engine_is_compiled():
+    if soils and _engine_works(made) and not engine_is_compiled():
         found["compiling the engine, once"] = spread(COMPILING)
-    if soil is not None and made["beds"][1]:
-        found["beds"] = _beds_time(pace * pour_time(soil), made["beds"], None if workers is None else cores)
-    if soil is not None and made["landings"][1]:
-        found["preview landing"] = spread(pace * landing_time(soil, *soil.landings[0]))
+    if soils and made["beds"][1]:
+        pour = pace * statistics.fmean(map(pour_time, soils))
+        found["beds"] = _beds_time(pour, made["beds"], None if workers is None else cores)
+    if soils and made["landings"][1]:
+        middle = soils[len(soils) // 2]
+        found["preview landing"] = spread(pace * landing_time(middle, *middle.landings[0]))
     if made["touchdowns"][1]:
-        one, (fewest, most) = run_time(soil, ended, pace), made["touchdowns"]
+        one, (fewest, most) = run_time(soils, ended, pace), made["touchdowns"]
         found["touchdowns"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None
     if made["journeys to rest"][1]:
-        one, (fewest, most) = journey_time(soil, pace), made["journeys to rest"]
+        one, (fewest, most) = journey_time(soils, pace), made["journeys to rest"]
         found["journeys"] = (fewest * one[0] / cores, most * one[1] / cores) if one and workers else None
     flying = flights_time(site) if made["flights"][1] else 0.0
     flying += journeys_time(site) if made["journeys"][1] else 0.0
@@ -161,16 +165,16 @@ def expected_seconds(
     return {what: span and (span[0], span[1] * slower) for what, span in found.items()}
 
 
-def basis(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None, ended: Sequence[Record]) -> str:
+def basis(made: Mapping[str, tuple[int, int]], soils: Sequence[ExpectedSoil], ended: Sequence[Record]) -> str:
     if made["touchdowns"][1] and len(walls_of(ended)) >= RUNS_THAT_TELL:
         said = f"Touchdowns by the times of the {len(walls_of(ended))} finished ones, all else estimated"
-    elif _engine_works(made) and soil is not None:
+    elif _engine_works(made) and soils:
         said = "Estimated from the number of time steps for contacts of this stiffness and speed"
     elif made["touchdowns"][1]:
         said = "The time of your program is unknown until some touchdowns are finished; all else is estimated"
     else:
         said = "Estimated"
-    pace = _pace(made, soil)
+    pace = _pace(made, soils)
     if pace is None:
         said += ", at the pace of the reference machine"
     else:
@@ -197,9 +201,9 @@ def _load() -> float:
     return os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0
 
 
-def _pace(made: Mapping[str, tuple[int, int]], soil: ExpectedSoil | None) -> float | None:
+def _pace(made: Mapping[str, tuple[int, int]], soils: Sequence[ExpectedSoil]) -> float | None:
     """Time of this machine over that of the reference machine, where it is worth a look and can be had at once."""
-    return machine_pace() if soil is not None and _engine_works(made) else None
+    return machine_pace() if soils and _engine_works(made) else None
 
 
 def _engine_works(made: Mapping[str, tuple[int, int]]) -> bool:
@@ -227,7 +231,7 @@ def _beds_time(one: float, beds: tuple[int, int], cores: int | None) -> Span | N
     return spread(one * rounds[0])[0], spread(one * rounds[1])[1]
 
 
-def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) -> Span | None:
+def run_time(soils: Sequence[ExpectedSoil], ended: Sequence[Record], pace: float) -> Span | None:
     """Time [s] of one touchdown in the mean, by the clock: as those that have ended took, else as expected of the soil.
 
     None where nobody knows: a program of one's own that has not yet run.
@@ -237,18 +241,18 @@ def run_time(soil: ExpectedSoil | None, ended: Sequence[Record], pace: float) ->
         mean = statistics.fmean(walls)
         factor = max(SPREAD_OF_RUNS, 1.0 + 2.0 * statistics.stdev(walls) / (mean * math.sqrt(len(walls))))
         return mean / factor, mean * factor
-    if soil is None:
+    if not soils:
         return None
-    mean = pace * statistics.fmean(landing_time(soil, *landing) for landing in soil.landings[1:])
+    mean = pace * statistics.fmean(landing_time(soil, *landing) for soil in soils for landing in soil.landings[1:])
     return mean / SPREAD_OF_TOUCHDOWNS, mean * SPREAD_OF_TOUCHDOWNS
 
 
-def journey_time(soil: ExpectedSoil | None, pace: float) -> Span | None:
+def journey_time(soils: Sequence[ExpectedSoil], pace: float) -> Span | None:
     """Time [s] of the touchdowns of one journey in the mean; None with a program of one's own."""
-    if soil is None:
+    if not soils:
         return None
-    mean = pace * mean_journey_time(soil)
-    return mean / SPREAD_OF_TOUCHDOWNS, mean * SPREAD_OF_TOUCHDOWNS
+    mean = pace * statistics.fmean(map(mean_journey_time, soils))
+    return mean / SPREAD_OF_JOURNEYS, mean * SPREAD_OF_JOURNEYS
 
 
 def mean_journey_time(soil: ExpectedSoil) -> float:

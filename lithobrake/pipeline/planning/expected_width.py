@@ -1,6 +1,7 @@
 """How wide the interval of a study's answer will be, and how many runs each bed has for it."""
 
 import math
+import statistics
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -221,19 +222,23 @@ class RunsABed:
         )
 
 
-def runs_a_bed(study: Study, soil: ExpectedSoil | None, ended: Sequence[Record]) -> RunsABed | None:
-    """Those of landers on several beds; None where there are none. ended: runs of this study that have."""
-    if not study.design.run_count or study.bed_count == 1 or soil is None:
+def runs_a_bed(study: Study, soils: Sequence[ExpectedSoil], ended: Sequence[Record]) -> RunsABed | None:
+    """Those of landers on several beds; None where there are none.
+
+    soils: beds as those of the study, each standing for as many; ended: runs of this study that have.
+    """
+    if not study.design.run_count or study.bed_count == 1 or not soils:
         return None
     pace = machine_pace() or 1.0
     if study.journey.touchdowns == 1:
-        span, runs = run_time(soil, ended, pace), ("landing", "landings")
+        span, runs = run_time(soils, ended, pace), ("landing", "landings")
     else:
-        span, runs = journey_time(soil, pace), ("journey", "journeys")
+        span, runs = journey_time(soils, pace), ("journey", "journeys")
     if span is None:
         return None
     # A span reaches as many times below its middle as above it.
-    run_count, cost = study.design.run_count, pace * pour_time(soil) / math.sqrt(math.prod(span))
+    pour = pace * statistics.fmean(map(pour_time, soils))
+    run_count, cost = study.design.run_count, pour / math.sqrt(math.prod(span))
     count, correlation = run_count / study.bed_count, expected_correlation(study)
     best = min(best_runs_a_bed(cost, correlation), max(run_count / FEWEST_BEDS_OF_INTERVAL, 1.0))
     over_best = cost_over_best(count, best, cost, correlation) - 1.0

@@ -25,6 +25,8 @@ from lithobrake.vocabulary.quantities import ELSEWHERE, GROUND
 
 # Of grains that are larger than the diameter that is told.
 LARGE_FRACTION = 0.1
+# Beds of a study whose ground is unknown that are priced.
+PRICED_BEDS = 6
 
 
 @dataclass(frozen=True)
@@ -189,12 +191,16 @@ def planned_kinds(design: DrawnDesign, price: Callable[[int], tuple[float, float
     return tuple(found)
 
 
-def median_bed(design: DrawnDesign) -> int:
-    """The bed with the median number of grains: what it costs is what beds cost in the mean."""
+def beds_of_all_sizes(design: DrawnDesign) -> list[int]:
+    """Some beds, by the size of their grains, of which each stands for as many others; the first of one ground.
+
+    What a bed costs rises steeply as its grains become fine, so that no one of them costs what all do in the mean.
+    """
     if not design.grounds.each:
-        return 0
-    counts = [of_ground(design.study, one).bed.grain_count for one in design.grounds.each]
-    return int(np.argsort(counts)[len(counts) // 2])
+        return [0]
+    order = np.argsort([one.size for one in design.grounds.each], kind="stable")
+    count = min(PRICED_BEDS, len(order))
+    return order[(np.arange(count) * len(order) + len(order) // 2) // count].tolist()
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from lithobrake.pipeline.planning.known_journeys import journeys_under_way
 from lithobrake.pipeline.planning.plan import Plan, bytes_in_words
 from lithobrake.pipeline.planning.planned_ground import (
     PlannedBeds,
-    median_bed,
+    beds_of_all_sizes,
     planned_beds,
     planned_boulders,
     planned_grains,
@@ -87,7 +87,9 @@ def plan_of(
     # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
     made = _made(study, stale.keys(), runs, beds, journeys_under_way(design, folder, known))
-    soil = None if not study.has_soil else ExpectedSoil.of(design, runs[-1].kept_count, median_bed(design))
+    kept = runs[-1].kept_count
+    soils = [ExpectedSoil.of(design, kept, bed) for bed in beds_of_all_sizes(design)] if study.has_soil else []
+    soil = soils[len(soils) // 2] if soils else None
     workers = None if on_cluster else workers or available_cores()
     ended = [known[key] for key in runs[-1].known]
     sizes, free = expected_time.expected_bytes(largest, runs[-1], soil), _free(folder.path)
@@ -100,19 +102,19 @@ def plan_of(
         runs=runs,
         half_width=expected_width(design, known, folder, soil),
         process_count=workers,
-        seconds=expected_time.expected_seconds(design.site, made, soil, ended, workers) if stale else {},
-        basis=expected_time.basis(made, soil, ended),
+        seconds=expected_time.expected_seconds(design.site, made, soils, ended, workers) if stale else {},
+        basis=expected_time.basis(made, soils, ended),
         bytes=sizes,
         free_bytes=free,
         warnings=(*(_no_room(sum(sizes.values()), free) if stale else ()), *study_warnings(design, soil)),
         site_slope_deg=design.site.slope_deg,
-        runs_a_bed=runs_a_bed(study, soil, ended),
+        runs_a_bed=runs_a_bed(study, soils, ended),
         grains=planned_grains(study),
         boulders=planned_boulders(study),
         tile=planned_tile(study),
         ground=planned_ground(design),
         soils=planned_soils(design.site),
-        kinds=planned_kinds(design, lambda bed: _price(design, runs[-1].kept_count, bed)),
+        kinds=planned_kinds(design, lambda bed: _price(design, kept, bed)),
         delivery=_delivery(design),
     )
 
@@ -122,7 +124,7 @@ def _price(design: DrawnDesign, kept_count: int, bed: int) -> tuple[float, float
     if design.study.journey.touchdowns == 1:
         return None
     pace = expected_time.machine_pace() or 1.0
-    return expected_time.journey_time(ExpectedSoil.of(design, kept_count, bed), pace)
+    return expected_time.journey_time([ExpectedSoil.of(design, kept_count, bed)], pace)
 
 
 def _made(

@@ -525,11 +525,11 @@ def test_other_work_on_the_cores_raises_upper_ends(tmp_path: Path, monkeypatch: 
 
 
 def test_runs_that_have_ended_tell_how_long_the_others_take() -> None:
-    assert run_time(None, [record(2.0)] * 4, 1.0) is None
-    lower, upper = run_time(None, [record(2.0)] * 5, 1.0) or (0.0, 0.0)
+    assert run_time([], [record(2.0)] * 4, 1.0) is None
+    lower, upper = run_time([], [record(2.0)] * 5, 1.0) or (0.0, 0.0)
     assert lower < 2.0 < upper < 1.2 * 2.0
     # Five runs of 1 to 9 s have a mean of 5 s that is known to 2.8 s.
-    wide = run_time(None, [record(wall) for wall in (1.0, 3.0, 5.0, 7.0, 9.0)], 1.0) or (0.0, 0.0)
+    wide = run_time([], [record(wall) for wall in (1.0, 3.0, 5.0, 7.0, 9.0)], 1.0) or (0.0, 0.0)
     assert wide == pytest.approx((5.0 / 1.5657, 5.0 * 1.5657), rel=1e-3)
 
 
