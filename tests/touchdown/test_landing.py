@@ -12,6 +12,7 @@ from lithobrake.dem import Box, Material, Sphere, read_hull
 from lithobrake.touchdown import OUTPUTS, ContactModel, Lander, land, simulation
 from lithobrake.touchdown.landing import outgoing
 from lithobrake.touchdown.simulation import CALM_SPEED, released_speed
+from lithobrake.vocabulary.field_errors import FieldError
 
 from .landings import landing as on_rock
 
@@ -44,6 +45,31 @@ def test_bouncy_ball_rebounds_and_tells_of_it(bed):
     assert out["peak_acceleration"] > 0.3 / out["contact_duration"]
     assert 4 <= len(outcome.frames["time"]) <= 8
     assert outcome.frames["position"].shape[1:] == (25, 3)
+
+
+@pytest.mark.parametrize("change", [{"yield_strength": 2e4}, {"restitution_speed": 0.01}])
+def test_what_yields_or_is_viscous_gives_back_less_at_speed(bed, change):
+    soft = dataclasses.replace(BOUNCY, **change)
+    hard, found = (land(bed, ball(one), landing(grain=one)).outputs for one in (BOUNCY, soft))
+    assert found["speed_out"] < 0.95 * hard["speed_out"]
+
+
+def test_turning_ground_bends_the_way_of_a_lander_that_hops(bed):
+    """Against ground that stands still, by the Coriolis acceleration over the time since the release at most."""
+    ways = []
+    for rotation in ((0.0, 0.0, 0.0), (0.0, 0.0, 1e-3)):
+        one = landing(rotation=rotation, hop_height=0.2, time_limit=400.0)
+        outcome = land(bed, ball(), one)
+        ways.append((outcome.status, outcome.outputs))
+    (still, before), (turning, after) = ways
+    assert still == turning == "clear"
+    lasts = after["duration"]
+    assert 0.0 < abs(after["velocity_out_y"] - before["velocity_out_y"]) < 2.0 * 2e-3 * 0.3 * max(lasts, 1.0)
+
+
+def test_a_rotation_that_is_no_number_is_refused_by_its_name():
+    with pytest.raises(FieldError, match=r"Landing\.rotation"):
+        landing(rotation=(0.0, math.nan, 0.0))
 
 
 def test_heavy_dead_box_is_captured(bed):
