@@ -152,8 +152,12 @@ def test_the_emulator_of_touchdowns_is_served(results: StudyResults, monkeypatch
     assert {one[0] for one in drawn} <= {0.0, 1.0, 3.0}
     for one in drawn:
         assert one[1] == pytest.approx(np.linalg.norm(one[4:]), rel=1e-12)
-    pointed = [served.evaluate(point, {"seed": 1, "orientation": one}) for one in ([1, 0, 0, 0], [0.7, 0.7, 0, 0])]
-    assert pointed[0] != pointed[1]
+    # Of draws near a row of the table some are of the same row at both attitudes.
+    flat, tipped = (
+        [served.evaluate(point, {"seed": seed, "orientation": one}) for seed in range(40)]
+        for one in ([1, 0, 0, 0], [0.7, 0.7, 0, 0])
+    )
+    assert flat != tipped
     with pytest.raises(ValueError, match=r"config.orientation is \[1, 0\]; allowed: a quaternion"):
         served.evaluate(point, {"orientation": [1, 0]})
     fast = [*point[:-4], 10.0 * point[-4], *point[-3:]]
