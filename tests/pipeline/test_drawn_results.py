@@ -109,7 +109,8 @@ def test_parts_of_the_variance_add_up_and_side_runs_tell_theirs(results: StudyRe
     soil, bed, place, chaos = (parts[name]["share"] for name in ("soil", "bed", "place", "chaos"))
     assert place == pytest.approx(max(0.0, 1.0 - soil - bed - chaos))
     assert set(parts["soil_by_input"]) == {name for name in results.runs.columns if name.startswith("grain.")} - {
-        "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction"}  # fmt: skip
+        "grain.poisson_ratio", "grain.cohesion_force", "grain.surface_energy", "grain.spinning_friction",
+        "grain.yield_strength", "grain.restitution_speed"}  # fmt: skip
     # Another seed is another place to these landings, so a twin is as unlike its run as any other.
     assert parts["chaos"]["upper"] > 0.5
     side = found["runs"]["side_runs"]

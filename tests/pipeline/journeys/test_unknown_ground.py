@@ -87,8 +87,9 @@ def test_the_answer_holds_over_grounds_and_on_each_kind(found: StudyResults) -> 
     # What tells grounds apart comes first among the inputs.
     parts = results.end_variance_shares["time_s"]
     assert parts is not None
-    assert next(iter(parts.soil_by_input)) == GROUND_SIZE
-    assert parts.soil_by_input[GROUND_SIZE].value > 0.1
+    assert list(parts.soil_by_input)[:2] == [GROUND_KIND, GROUND_SIZE]
+    # Of two kinds of different sizes either may be found at the other.
+    assert max(parts.soil_by_input[name].value for name in (GROUND_KIND, GROUND_SIZE)) > 0.1
 
 
 def test_the_page_shows_the_answer_against_the_size_of_the_grains(found: StudyResults) -> None:

@@ -96,7 +96,8 @@ def test_the_table_of_restitution_has_what_runs_and_samples_say(journeys: StudyR
 
 def test_landers_on_equivalent_ground_stand_beside_hard_ground(journeys: StudyResults) -> None:
     equivalent = journeys.results.hard_ground["equivalent"]
-    assert (equivalent.count, equivalent.unknown, equivalent.level) == (100, 0.0, None)
+    assert (equivalent.count, equivalent.level) == (100, None)
+    assert equivalent.unknown <= 0.03
     assert equivalent.why is not None
     # A fifth stays at the first impact.
     assert equivalent.ends["at_rest"].share.value > 0.2
