@@ -55,7 +55,8 @@ def test_a_landing_again_has_the_numbers_of_the_ledger_and_writes_nothing(copied
         assert found == records[key].outputs
         assert outcome.frames["position"].shape[1:] == (31, 3)
         assert outcome.frames["orientation"].shape[1:] == (31, 4)
-        assert len(outcome.frames["time"]) >= 5
+        # A landing that is over after few looks has no more frames than looks.
+        assert len(outcome.frames["time"]) >= 3
     assert {path: path.stat().st_mtime_ns for path in copied.rglob("*")} == before
 
 
