@@ -87,11 +87,9 @@ def plan_of(
     # One entry where the number of runs is known: both are the same object then.
     beds = tuple(planned_beds(one.study, folder) for one in dict.fromkeys((design, largest)))
     made = _made(study, stale.keys(), runs, beds, journeys_under_way(design, folder, known))
-    kept = runs[-1].kept_count
-    soils = [ExpectedSoil.of(design, kept, bed) for bed in beds_of_all_sizes(design)] if study.has_soil else []
+    soils = _soils(design, runs[-1].kept_count)
     soil = soils[len(soils) // 2] if soils else None
-    workers = None if on_cluster else workers or available_cores()
-    ended = [known[key] for key in runs[-1].known]
+    workers, ended = None if on_cluster else workers or available_cores(), [known[key] for key in runs[-1].known]
     sizes, free = expected_time.expected_bytes(largest, runs[-1], soil), _free(folder.path)
     return Plan(
         study=name,
@@ -114,9 +112,16 @@ def plan_of(
         tile=planned_tile(study),
         ground=planned_ground(design),
         soils=planned_soils(design.site),
-        kinds=planned_kinds(design, lambda bed: _price(design, kept, bed)),
+        kinds=planned_kinds(design, lambda bed: _price(design, runs[-1].kept_count, bed)),
         delivery=_delivery(design),
     )
+
+
+def _soils(design: DrawnDesign, kept_count: int) -> list[ExpectedSoil]:
+    """Beds as those of a study, each standing for as many; none of a program of one's own."""
+    if not design.study.has_soil:
+        return []
+    return [ExpectedSoil.of(design, kept_count, bed) for bed in beds_of_all_sizes(design)]
 
 
 def _price(design: DrawnDesign, kept_count: int, bed: int) -> tuple[float, float] | None:
