@@ -138,7 +138,7 @@ def test_collisions_of_all_sizes_are_alike() -> None:
 @pytest.mark.parametrize(
     "material",
     [
-        replace(YIELDING, young_modulus=1e6, yield_strength=5e3, friction=0.5, restitution=0.7, surface_energy=0.01),
+        replace(YIELDING, young_modulus=1e6, yield_strength=1e4, friction=0.5, restitution=0.7, surface_energy=0.01),
         replace(VISCOUS, young_modulus=1e6, friction=0.5),
     ],
     ids=["yielding", "viscous"],
