@@ -200,7 +200,8 @@ class World(Observables):
         """Advance by a duration [s], rounded to whole steps, or by a number of steps.
 
         Raises StepTooLargeError where the time step is too large for a contact (it names the largest safe one), and
-        FloatingPointError where the motion diverged, or a body lies wholly behind a plane that meets it.
+        FloatingPointError where the motion diverged, a contact has yielded too deeply, or a body lies wholly behind a
+        plane that meets it.
         """
         if (duration is None) == (steps is None):
             raise ValueError("World.run takes either duration [s] or steps: give one of them")
@@ -231,7 +232,8 @@ class World(Observables):
         reach [m] of the watched body and slower than half of held_speed [m/s] stands still until a blow would make it
         that fast, or nothing carries it; with 0 nothing does.
         Raises ValueError for a duration below 0, less than 5 steps, or a held_speed without a watched body,
-        FloatingPointError where the motion diverged, or a body lies wholly behind a plane that meets it.
+        FloatingPointError where the motion diverged, a contact has yielded too deeply, or a body lies wholly behind a
+        plane that meets it.
         """
         if not self.bodies:
             raise ValueError("World.run_locally has no body to move: add one first")

@@ -10,7 +10,7 @@ from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies
 from lithobrake.dem.bodies.orientation import stand, turned
 from lithobrake.dem.bodies.vectors import add, cross, dot, minus, plus, put, row, scaled, times
-from lithobrake.vocabulary.array_types import Floats, Vector
+from lithobrake.vocabulary.array_types import Vector
 
 # Angle [rad] below which the closed form takes series, whose next terms are below rounding.
 SMALL_ANGLE = 0.25
@@ -36,7 +36,7 @@ def arc_factors(angle: float) -> tuple[float, float, float, float]:
 def coasted(velocity: Vector, along: Vector, time: float, rotation: Vector) -> tuple[Vector, Vector]:
     """Return the way [m] and the velocity [m/s] after a time [s] under a steady acceleration [m/s2], exactly.
 
-    rotation: of the frame [rad/s], with size `rate` above 0. dv/dt = a - 2 w x v: about w the velocity turns as that of
+    rotation: of the frame [rad/s]. dv/dt = a - 2 w x v: about w the velocity turns as that of
     a charge in crossed fields.
     """
     twice = scaled(2.0, rotation)
@@ -127,9 +127,3 @@ def precession(slenderness: float, spin: float, rate: float) -> float:
     # From Euler's equations in the frame: I ds/dt = I (s x w) - s x I w - w x I w and what turns I s without changing
     # its size.
     return slenderness * rate * (2.0 * spin + rate)
-
-
-def slenderness_of(inverse_inertia: Floats) -> Floats:
-    """Return the largest over the smallest moment of inertia, [count], from inverse inertias [count, 3, 3]."""
-    moments: Floats = np.linalg.eigvalsh(inverse_inertia).astype(np.float64)
-    return moments[:, -1] / moments[:, 0]

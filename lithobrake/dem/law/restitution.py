@@ -1,7 +1,7 @@
 """What two materials have in common, and the damping ratio from which their restitution comes out."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -47,13 +47,18 @@ def restitution_of(damping_ratio: float) -> float:
 @cache
 def damping_ratio_of(restitution: float) -> float:
     """Return the damping ratio from which exactly this restitution comes out, at every speed."""
+    return _damping_of(restitution, restitution_of, 1e-15, 1e-14)
+
+
+def _damping_of(restitution: float, law: Callable[[float], float], xtol: float, rtol: float) -> float:
+    """Return the damping from which a restitution comes out by a law that falls from 1 towards 0 without end."""
     if restitution == 1.0:
         return 0.0
-    # Restitution falls towards 0 as the damping ratio grows without end, so no bound serves for all.
+    # No bound serves for all.
     upper = 1.0
-    while restitution_of(upper) > restitution:
+    while law(upper) > restitution:
         upper *= 2.0
-    return float(brentq(lambda zeta: restitution_of(zeta) - restitution, 0.0, upper, xtol=1e-15, rtol=1e-14))
+    return float(brentq(lambda damping: law(damping) - restitution, 0.0, upper, xtol=xtol, rtol=rtol))
 
 
 def viscous_restitution_of(viscosity: float) -> float:
@@ -81,12 +86,7 @@ def viscous_restitution_of(viscosity: float) -> float:
 @cache
 def viscosity_ratio_of(restitution: float) -> float:
     """Return the viscosity from which this restitution comes out."""
-    if restitution == 1.0:
-        return 0.0
-    upper = 1.0
-    while viscous_restitution_of(upper) > restitution:
-        upper *= 2.0
-    return float(brentq(lambda one: viscous_restitution_of(one) - restitution, 0.0, upper, xtol=1e-9, rtol=1e-9))
+    return _damping_of(restitution, viscous_restitution_of, 1e-9, 1e-9)
 
 
 def viscosity(young_modulus: float, restitution: float, speed: float) -> float:

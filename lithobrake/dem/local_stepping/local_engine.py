@@ -6,7 +6,6 @@ import numpy as np
 
 from lithobrake.dem.bodies.arrays import Pairs, Reactions, Step
 from lithobrake.dem.bodies.rigid_body import RigidBody
-from lithobrake.dem.bodies.turning_frame import slenderness_of
 from lithobrake.dem.bodies.vectors import folded
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import Cells, cells_of
@@ -43,8 +42,7 @@ class Setting(NamedTuple):
 def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     """Return bodies that have just arrived at an instant [s] and were never planned."""
     n = len(bodies)
-    turning: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body)[:, -1].astype(np.float64)
-    slenderness = slenderness_of(engine.bodies.inverse_inertia_body)
+    moments: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body).astype(np.float64)
     mass = np.array([mass for body in bodies for mass in body.smallest_masses_at_contact])
     # NaN, from which no change is small: every body is planned at its first look.
     never = np.full((n, 3), np.nan)
@@ -52,8 +50,8 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     return Flight(
         time=np.full(n, time), planned=np.full(n, time), velocity=never, momentum=np.zeros((n, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
-        touching=np.zeros(n, np.int64), turning=turning, slenderness=slenderness, mass=mass,
-        head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
+        touching=np.zeros(n, np.int64), turning=moments[:, -1].copy(), slenderness=moments[:, -1] / moments[:, 0],
+        mass=mass, head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
         resolved_speed=np.zeros(1), told=np.full(n, time),
     )  # fmt: skip
 
