@@ -107,7 +107,7 @@ def add_pair(
     own, other = (1, 0) if 0 <= members[1] < members[0] else (0, 1)
     pairs.first[pair], pairs.second[pair] = members[own], members[other]
     pairs.first_part[pair], pairs.second_part[pair] = parts[own], parts[other]
-    pairs.wake[pair], pairs.feature_count[pair] = 0.0, 0
+    pairs.wake[pair], pairs.feature_count[pair], pairs.deepest[pair] = 0.0, 0, 0.0
     plans.last[pair], plans.interval[pair] = now, 0.0
     enter_pair(pair, bodies, planes, pairs, laws, flight, plans, agenda, now)
     return True
