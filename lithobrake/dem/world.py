@@ -42,6 +42,8 @@ from lithobrake.vocabulary.material_properties import Material
 DEEPEST_DENT = 0.15
 # More than any machine has cores.
 MOST_THREADS = 1024
+# Of the speed with which a blow lets go what is held: what is slower is held, where nothing else is asked for.
+CALM = 0.5
 
 
 class StepTooLargeError(FieldError):
@@ -221,7 +223,7 @@ class World(Observables):
 
     def run_locally(
         self, duration: float, steps_per_contact: float, *, resolved_speed: float = 0.0, held_speed: float = 0.0,
-        reach: float = 0.0,
+        calm_speed: float | None = None, reach: float = 0.0,
     ) -> None:  # fmt: skip
         """Advance by a duration [s], every contact at steps of its own, so many in the time of its collision.
 
@@ -229,12 +231,13 @@ class World(Observables):
         Energy of a landing is kept to four thousandths of the impact's with 25 steps, to one with 100. The time step
         plays no part. Collisions slower than resolved_speed [m/s] take fewer steps, in proportion, but never less than
         5; at 0.3 of the lander's, energy is kept to some hundredths. What is carried by what it touches, is beyond a
-        reach [m] of the watched body and slower than half of held_speed [m/s] stands still until a blow would make it
-        that fast, or nothing carries it; with 0 nothing does.
+        reach [m] of the watched body and slower than calm_speed [m/s], without it half of held_speed, stands still
+        until a blow would make it as fast as held_speed [m/s], or nothing carries it; with 0 nothing does.
         Raises ValueError for a duration below 0, less than 5 steps, or a held_speed without a watched body,
         FloatingPointError where the motion diverged, a contact has yielded too deeply, or a body lies wholly behind a
         plane that meets it.
         """
+        calm_speed = CALM * held_speed if calm_speed is None else calm_speed
         if not self.bodies:
             raise ValueError("World.run_locally has no body to move: add one first")
         for name, value, least, si in (
@@ -242,6 +245,7 @@ class World(Observables):
             ("steps_per_contact", steps_per_contact, FEWEST_STEPS, ""),
             ("resolved_speed", resolved_speed, 0.0, "m/s"),
             ("held_speed", held_speed, 0.0, "m/s"),
+            ("calm_speed", calm_speed, 0.0, "m/s"),
             ("reach", reach, 0.0, "m"),
         ):
             allowed = f"is a finite value of at least {least:g}"
@@ -259,7 +263,7 @@ class World(Observables):
         # No part of the setting: both follow the speed of the lander from call to call, and another setting has all
         # plans made anew.
         local.slow_down(resolved_speed)
-        local.hold(held_speed, reach)
+        local.hold(calm_speed, held_speed, reach)
         if not local.run(duration):
             self._refuse(DIVERGED)
         self.time = local.time

@@ -114,9 +114,10 @@ class ContactSection(Section):
     """Collisions slower than this fraction of the lander's speed take fewer steps than steps_per_contact, in proportion
     to their speed, but at least five. 0: all collisions take the same number of steps. Only with stepping = "local"."""
     held_speed: Annotated[float, Number("", at_least=0, below=1)] = HELD_SPEED
-    """Grains in contact are frozen while they are slower than this fraction of the lander's speed and farther from it
-    than the walls of the smallest bed would be. An impact that makes them faster releases them. 0: no grain is frozen.
-    With stepping = "global" 0 is the default and the only value."""
+    """Grains in contact are frozen while they are slower than half of this fraction of the lander's speed and farther
+    from it than the walls of the smallest bed would be. Once the lander has left the contacts of an impact behind, or
+    is too slow to leave, those near it are frozen, too, below five times the fraction. An impact that makes them faster than the
+    fraction releases them. 0: no grain is frozen. With stepping = "global" 0 is the default and the only value."""
 
 
 class LandingSection(Section):

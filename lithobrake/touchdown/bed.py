@@ -90,8 +90,10 @@ class ContactModel:
     steps_per_contact: in each ("local", see World.run_locally), or in the shortest that the impact can make.
     stepping: "local", steps of its own for each contact, or "global", the same for all.
     resolved_speed: collisions slower than this share of the lander take fewer steps, in proportion, but at least five.
-    held_speed: grains that touch something stand still while they are slower than this share of the lander and farther
-    from it than the rule of smallest_bed.py keeps clear; 0: none do. Only with local steps.
+    held_speed: grains that touch something stand still while they are slower than half of this share of the lander and
+    farther from it than `smallest_bed` keeps clear, or, where an impact is over or it is too slow to leave,
+    slower than CALM_AT_REST times the share, until a blow makes them as fast as the share; 0: none do. Only with local
+    steps.
     """
 
     shear_modulus_rule: str = "mindlin"

@@ -21,6 +21,11 @@ CHECKS_PER_CONTACT = 5  # looks at the lander in the time of the shortest contac
 # Where contacts step for themselves, looks are farther apart: until the lander moves by this part of its smallest edge,
 # and never farther than this part of the time limit.
 LOOK_WAY, LOOK_TIME = 0.05, 1e-3
+# Where a lander does not feel how grains come to rest, those are held that are slower than this part of the speed with
+# which a blow lets them go: at a held_speed of 0.03 that is 0.15 of the lander's.
+CALM_AT_REST = 5.0
+# An impact is over once the lander has gone so many grain diameters since its last touch.
+IMPACT_OVER = 1.0
 # Looks in the time that a lander has to stay where it is until it rests.
 LOOKS_AT_REST = 50
 # Motion of the grains that a landing does not feel, over its impact speed: a bed takes on another soil at once where
@@ -62,7 +67,7 @@ def land(
     reach = moving_reach(bed.grain_diameter, lander, landing)
     while judge.ended is None:
         if locally:
-            run_until_looked_at(world, judge.motion, lander, landing, reach)
+            run_until_looked_at(world, judge.motion, lander, landing, bed.grain_diameter, reach)
         else:
             world.run(steps=max(1, int(landing.contact.steps_per_contact / CHECKS_PER_CONTACT)))
         judge.look()
@@ -87,20 +92,28 @@ def released_speed(bed: Bed, material: Material) -> float:
     return math.sqrt(2.0 * freed / mass)
 
 
-def run_until_looked_at(world: World, motion: BodyMotion, lander: Lander, landing: Landing, reach: float) -> None:
+def run_until_looked_at(
+    world: World, motion: BodyMotion, lander: Lander, landing: Landing, diameter: float, reach: float
+) -> None:
     """Move a world on, each contact by steps of its own, until a lander in motion is to be looked at again.
 
-    reach: from the lander's centre of mass [m], within which no grain is held while it touches.
+    diameter: of the grains [m]; reach: from the lander's centre of mass [m], within which no grain is held before the
+    end of an impact after which it may leave.
     """
     contact, speed = landing.contact, surface_speed(motion, lander)
     # A lander slower than that cannot leave: grains count as slow beside this speed at least.
-    telling = max(speed, math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2]))))
-    # Between two touches nothing but a hop has to be followed, and what it ends on is let go by the blow.
-    is_aloft = world.first_touch is not None and not world.is_touched
+    leaving = math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2])))
+    telling = max(speed, leaving)
+    held = contact.held_speed * telling
+    # Once an impact is over, since when it has gone a grain's width, and too slow to leave, it does not feel how grains
+    # come to rest; a blow lets them go.
+    comes_to_rest = world.first_touch is not None and (
+        speed < leaving or speed * (world.time - world.watched["last_contact"]) > IMPACT_OVER * diameter
+    )
     world.run_locally(
         look_interval(world, speed, lander, landing), contact.steps_per_contact,
-        resolved_speed=contact.resolved_speed * telling, held_speed=contact.held_speed * telling,
-        reach=0.0 if is_aloft else reach,
+        resolved_speed=contact.resolved_speed * telling, held_speed=held,
+        calm_speed=CALM_AT_REST * held if comes_to_rest else None, reach=0.0 if comes_to_rest else reach,
     )  # fmt: skip
 
 

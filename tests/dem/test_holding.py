@@ -155,6 +155,28 @@ def test_what_is_far_and_at_rest_stands_still_until_the_watched_body_is_near() -
     assert not held(world).any()
 
 
+def test_what_is_slower_than_calm_is_held_and_let_go_by_a_blow_of_the_held_speed() -> None:
+    def slide(calm_speed: float | None) -> World:
+        world = heap()
+        # Without friction it goes on at 1e-3 m/s, towards the next ball 0.01 m away.
+        world.add_body(Sphere(0.05), replace(ROUGH, friction=0.0), (2.0, 0.0, 0.05), (1e-3, 0.0, 0.0))
+        world.run_locally(1.0, 15.0)
+        world.run_locally(0.1, 15.0, held_speed=1e-3, calm_speed=calm_speed)
+        return world
+
+    assert not held(slide(None))[-1]
+    assert not held(slide(0.9e-3))[-1]
+    world = slide(5e-3)
+    assert held(world)[1:].all()
+    # It has booked its motion as lost, and goes on from rest once a ball hits it.
+    assert (world.velocity[-1] == 0.0).all()
+    world.add_body(Sphere(0.05), HARD, (1.85, 0.0, 0.05), (0.01, 0.0, 0.0))
+    for _ in range(30):
+        world.run_locally(0.5, 15.0, held_speed=1e-3, calm_speed=2e-3)
+    assert not held(world)[-2]
+    assert world.velocity[-2, 0] > 2e-3
+
+
 def test_with_all_in_reach_no_bit_changes() -> None:
     plain, other = heap(), heap()
     for _ in range(5):

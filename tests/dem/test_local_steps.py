@@ -274,6 +274,8 @@ def test_what_cannot_be_run_is_refused() -> None:
         world.run_locally(1.0, 15.0, held_speed=math.nan)
     with pytest.raises(ValueError, match=r"held_speed is 0\.1 m/s; allowed is 0 while no body is watched: call watch"):
         world.run_locally(1.0, 15.0, held_speed=0.1)
+    with pytest.raises(ValueError, match=r"calm_speed is -1\.0 m/s; allowed is a finite value of at least 0"):
+        world.run_locally(1.0, 15.0, held_speed=0.1, calm_speed=-1.0)
 
 
 @pytest.mark.parametrize("begun", [0.0, 0.6], ids=["before it moves", "on its way"])

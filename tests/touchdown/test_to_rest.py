@@ -44,6 +44,31 @@ def slow(**changes: Any) -> Landing:
     return landing(**{**of_rest, "contact": ContactModel(held_speed=0.03), **changes})
 
 
+def test_near_grains_are_held_once_an_impact_is_over_or_the_lander_cannot_leave(
+    ground: Bed, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run, seen = World.run_locally, []
+
+    def noted(world: World, *args: Any, **options: Any) -> None:
+        number = len(world.bodies) - 1
+        turning = np.linalg.norm(world.spin[number]) * LANDER.reach
+        speed = float(np.linalg.norm(world.velocity[number]) + turning)
+        since = world.time - world.watched["last_contact"]
+        seen.append((speed, world.first_touch is None, speed * since, options))
+        run(world, *args, **options)
+
+    monkeypatch.setattr(World, "run_locally", noted)
+    land(ground, LANDER, slow())
+    # Half of its smallest edge: no lander slower than that can rise higher.
+    leaving = math.sqrt(GRAVITY * LANDER.smallest_edge)
+    for speed, is_coming, gone, options in seen:
+        may_leave = is_coming or (gone <= ground.grain_diameter and speed >= leaving)
+        assert (options["reach"] > 0.0) == may_leave
+        assert options["calm_speed"] == (None if may_leave else pytest.approx(5.0 * options["held_speed"]))
+        assert options["held_speed"] == pytest.approx(0.03 * max(speed, leaving))
+    assert {options["reach"] > 0.0 for _, _, _, options in seen} == {True, False}
+
+
 def test_a_slow_lander_comes_to_rest_on_a_side(ground: Bed) -> None:
     outcome = land(ground, LANDER, slow(), frame_count=20)
     outputs = outcome.outputs

@@ -11,14 +11,8 @@ from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
 from lithobrake.dem.bodies.vectors import dot, minus, put, row, times, way_between
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, put_on, replan, touches
-from lithobrake.dem.local_stepping.free_motion import (
-    Flight,
-    Rules,
-    surface_speed,
-)
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules, spin_of
 
-# A body is held when it is slower than this part of the speed that counts as slow.
-CALM = 0.5
 # Part of its weight that its contacts carry of a body that is held, and less than which lets it go.
 CARRIED, DROPPED = 0.5, 0.3
 
@@ -63,6 +57,13 @@ def let_go(
 
 
 @kernel
+def speed_of_surface(bodies: Bodies, body: int) -> float:
+    """Return the speed of a body's centroid and that of its farthest point about it, summed [m/s]."""
+    velocity, spin = row(bodies.velocity, body), spin_of(bodies, body)
+    return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * dot(spin, spin) ** 0.5
+
+
+@kernel
 def carries(bodies: Bodies, body: int, rules: Rules, part: float) -> bool:
     """Tell whether contacts carry more than a part of the weight of a body."""
     against = dot(row(bodies.force, body), rules.gravity) * bodies.inverse_mass[body]
@@ -87,12 +88,13 @@ def is_stirred(pair: int, bodies: Bodies, pairs: Pairs, flight: Flight, plans: P
 
 @large_kernel
 def hold_what_is_slow(
-    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, watched: int, limit: float,
-    reach: float, now: float, rules: Rules,
+    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, watched: int, calm: float,
+    limit: float, reach: float, now: float, rules: Rules,
 ) -> None:  # fmt: skip
     """Hold what touches something, is slow, and has its centroid beyond a reach [m] of the watched body's.
 
-    Slow: its surface, below CALM times a limit [m/s]. What comes near is let go; with a limit of 0, all.
+    calm: speed of its surface [m/s] below which it is slow; limit: with which a blow has it let go [m/s]. What comes
+    near is let go; with a limit of 0, all.
     All must have been moved to now [s]. Writes to bodies, flight, plans and agenda.
     """
     flight.fastest_held[0] = limit
@@ -105,7 +107,7 @@ def hold_what_is_slow(
                 let_go(bodies, pairs, flight, plans, agenda, body, now, rules)
         # What touches nothing flies, however slowly, and held it would hang above the ground.
         elif (
-            far and surface_speed(bodies, flight, body) < CALM * limit
+            far and speed_of_surface(bodies, body) < calm
             and touches(pairs, flight, plans, body) and carries(bodies, body, rules, CARRIED)
         ):  # fmt: skip
             hold(bodies, pairs, flight, plans, agenda, body, now, rules)

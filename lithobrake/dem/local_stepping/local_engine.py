@@ -187,18 +187,21 @@ class LocalEngine:
         """Take all steps of collisions at this speed [m/s] and above; of slower ones fewer, in proportion."""
         self.flight.resolved_speed[0] = resolved_speed
 
-    def hold(self, limit: float, reach: float) -> None:
-        """Hold what is slower than a limit [m/s] and beyond a reach [m] of the watched body, and let go the rest."""
+    def hold(self, calm: float, limit: float, reach: float) -> None:
+        """Hold what is slower than `calm` [m/s] and beyond a reach [m] of the watched body, and let go what is within.
+
+        limit: speed [m/s] with which a blow has a held body let go; 0: all are let go.
+        """
         if limit > 0.0 or self.flight.held.any():
             hold_what_is_slow(
                 self.engine.bodies, self.pairs, self.flight, self.plans, self.agenda, self.setting.watched,
-                limit, reach, self.time, self.rules,
+                calm, limit, reach, self.time, self.rules,
             )  # fmt: skip
 
     def give_back(self) -> None:
         """Leave the engine with its pairs in order, ready for steps that all contacts share."""
         pairs = self.pairs
-        self.hold(0.0, 0.0)
+        self.hold(0.0, 0.0, 0.0)
         self.engine.book()
         used = np.flatnonzero(pairs.first >= 0)
         # Slots were filled as pairs were met; sums of forces at common steps run in the order of the bodies.
