@@ -11,10 +11,11 @@ again.
 import tempfile
 from pathlib import Path
 
+import lithobrake
+
+# fine_ground.py lets harness.py be found.
 from fine_ground import found
 from harness import SCENARIOS, Row, add_row, command_line, read_rows, study_tables
-
-import lithobrake
 
 LAWS = {"constant": {}, "yields": {"yield_strength": 7.2e3}, "viscoelastic": {"restitution_speed": 0.055}}
 COUNT = 96
@@ -23,7 +24,9 @@ TABLE = Path(__file__).with_suffix(".csv")
 
 def tables(law: str) -> Row:
     """The study under a law."""
-    return study_tables(SCENARIOS / "quick.toml", {"journey": {"count": COUNT, "emulated_count": 0}, "grain": LAWS[law]})
+    return study_tables(
+        SCENARIOS / "quick.toml", {"journey": {"count": COUNT, "emulated_count": 0}, "grain": LAWS[law]}
+    )
 
 
 def main() -> None:

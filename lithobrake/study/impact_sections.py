@@ -116,8 +116,9 @@ class ContactSection(Section):
     held_speed: Annotated[float, Number("", at_least=0, below=1)] = HELD_SPEED
     """Grains in contact are frozen while they are slower than half of this fraction of the lander's speed and farther
     from it than the walls of the smallest bed would be. Once the lander has left the contacts of an impact behind, or
-    is too slow to leave, those near it are frozen, too, below five times the fraction. An impact that makes them faster than the
-    fraction releases them. 0: no grain is frozen. With stepping = "global" 0 is the default and the only value."""
+    is too slow to leave, those near it are frozen, too, below five times the fraction. An impact that makes them faster
+    than the fraction releases them. 0: no grain is frozen. With stepping = "global" 0 is the default and the only
+    value."""
 
 
 class LandingSection(Section):
