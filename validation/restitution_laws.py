@@ -11,11 +11,11 @@ again.
 import tempfile
 from pathlib import Path
 
-import lithobrake
-
-# fine_ground.py lets harness.py be found.
+# It lets harness.py be found.
 from fine_ground import found
 from harness import SCENARIOS, Row, add_row, command_line, read_rows, study_tables
+
+import lithobrake
 
 LAWS = {"constant": {}, "yields": {"yield_strength": 7.2e3}, "viscoelastic": {"restitution_speed": 0.055}}
 COUNT = 96
