@@ -7,7 +7,7 @@ pours beds of each study of scenarios/ or validation/studies/, makes so many of 
 grains held and without, and keeps the means of what came beside what was expected in benchmarks/plan_estimate.json. Of
 a study of journeys it follows so many of these on as many beds instead. `bed_costs` is how many landings or journeys a
 bed costs: what default_bed_count in lithobrake/study/ground_sections.py stands on. The
-constants of expected_steps.py, expected_time.py and pace.py in lithobrake/pipeline/planning were taken from there.
+constants of expected_steps.py and expected_time.py in lithobrake/pipeline/planning were taken from there.
 """
 
 import json
@@ -67,7 +67,7 @@ def measure(name: str, bed_count: int, count: int) -> Row:
     pour_bed(replace(soil.recipe, grain_count=COMPILED_BY, width=(small, small), sides="walls"))
     pours = [timed(lambda seed=seed: pour_bed(replace(soil.recipe, seed=seed))) for seed in range(bed_count)]
     bed, seconds = pours[0][0], [seconds for _, seconds in pours]
-    journeys = None if study.journey is None else followed(name, soil, bed_count, count)
+    journeys = None if study.journey.touchdowns == 1 else followed(name, soil, bed_count, count)
     landings = [landed(bed, soil, held, count) for held in HELD] if journeys is None else []
     paces.append(probe() / REFERENCE)
     pour = {"cpu_s": statistics.fmean(seconds), "each_cpu_s": seconds, "expected_s": pour_time(soil)}

@@ -24,8 +24,8 @@ LOOK_WAY, LOOK_TIME = 0.05, 1e-3
 # Where a lander does not feel how grains come to rest, those are held that are slower than this part of the speed with
 # which a blow lets them go: at a held_speed of 0.03 that is 0.15 of the lander's.
 CALM_AT_REST = 5.0
-# An impact is over once the lander has gone so many grain diameters since its last touch.
-IMPACT_OVER = 1.0
+# An impact is over once the lander has gone this part of a grain diameter since its last touch.
+IMPACT_OVER = 0.5
 # Looks in the time that a lander has to stay where it is until it rests.
 LOOKS_AT_REST = 50
 # Motion of the grains that a landing does not feel, over its impact speed: a bed takes on another soil at once where
@@ -105,7 +105,7 @@ def run_until_looked_at(
     leaving = math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2])))
     telling = max(speed, leaving)
     held = contact.held_speed * telling
-    # Once an impact is over, since when it has gone a grain's width, and too slow to leave, it does not feel how grains
+    # Once an impact is over, since when it has gone half a grain's width, and too slow to leave, it does not feel how grains
     # come to rest; a blow lets them go.
     comes_to_rest = world.first_touch is not None and (
         speed < leaving or speed * (world.time - world.watched["last_contact"]) > IMPACT_OVER * diameter

@@ -62,7 +62,7 @@ def test_near_grains_are_held_once_an_impact_is_over_or_the_lander_cannot_leave(
     # Half of its smallest edge: no lander slower than that can rise higher.
     leaving = math.sqrt(GRAVITY * LANDER.smallest_edge)
     for speed, is_coming, gone, options in seen:
-        may_leave = is_coming or (gone <= ground.grain_diameter and speed >= leaving)
+        may_leave = is_coming or (gone <= 0.5 * ground.grain_diameter and speed >= leaving)
         assert (options["reach"] > 0.0) == may_leave
         assert options["calm_speed"] == (None if may_leave else pytest.approx(5.0 * options["held_speed"]))
         assert options["held_speed"] == pytest.approx(0.03 * max(speed, leaving))
