@@ -105,8 +105,7 @@ def run_until_looked_at(
     leaving = math.sqrt(2.0 * max(0.0, capture_lift(lander, -landing.gravity[2])))
     telling = max(speed, leaving)
     held = contact.held_speed * telling
-    # Once an impact is over, since when it has gone half a grain's width, and too slow to leave, it does not feel how grains
-    # come to rest; a blow lets them go.
+    # Once an impact is over, and too slow to leave, it does not feel how grains come to rest; a blow lets them go.
     comes_to_rest = world.first_touch is not None and (
         speed < leaving or speed * (world.time - world.watched["last_contact"]) > IMPACT_OVER * diameter
     )
