@@ -23,15 +23,15 @@ from lithobrake.report.figures.style import STYLE
 
 
 class OwnProcess(LocalExecutor):
-    """A pool whose only worker, where it has one and no limit to keep, is this process: another would import for
-    seconds what it makes runs with for milliseconds.
+    """A pool whose only worker, where it has one, is this process: another would import for seconds what it makes runs
+    with for milliseconds. Limits are not kept: tests/campaign tests them.
     """
 
     def submit_limited(
         self, limits: Limits, function: Callable[..., Any], /, *args: Any, **kwargs: Any
     ) -> "Future[Any]":
         """Make a call here and now, of what a process of its own would be sent."""
-        if self.worker_count > 1 or limits != Limits():
+        if self.worker_count > 1:
             return super().submit_limited(limits, function, *args, **kwargs)
         future = Future[Any]()
         future.set_running_or_notify_cancel()
