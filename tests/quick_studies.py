@@ -1,12 +1,14 @@
 """Studies that take less time at what the tests of their results do not look at: validation of emulators, pictures,
-processes.
+processes, and what only a power cut shows.
 """
 
+import os
 import pickle
+import sqlite3
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import pytest
@@ -20,6 +22,14 @@ from lithobrake.pipeline import study_run
 from lithobrake.pipeline.commands import rare_landings, site_maps
 from lithobrake.report import reports
 from lithobrake.report.figures.style import STYLE
+
+
+class Unsynced(sqlite3.Connection):
+    """A file that is as whole as any after a process has died, and no longer after a power cut."""
+
+    def execute(self, sql: str, *values: Any) -> sqlite3.Cursor:
+        """Execute a statement, and wait for no disk."""
+        return super().execute("PRAGMA synchronous = OFF" if sql.startswith("PRAGMA synchronous") else sql, *values)
 
 
 class OwnProcess(LocalExecutor):
@@ -68,13 +78,15 @@ def blank_pictures() -> Iterator[None]:
 @contextmanager
 def quick_studies() -> Iterator[None]:
     """Emulators are fitted anew without each quarter of the beds, and not without each bed; pictures are coarse; a
-    study of one worker makes its runs in this process.
+    study of one worker makes its runs in this process; nothing that this process writes waits for the disk.
 
     What an emulator is worth is tested in tests/emulator, how pages look in tests/report, processes in tests/campaign.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(validation, "MOST_FOLDS", 4)
         patch.setitem(STYLE, "savefig.dpi", 50)
+        patch.setattr(os, "fsync", lambda file: None)
+        patch.setattr(sqlite3, "connect", partial(sqlite3.connect, factory=Unsynced))
         for module in (study_run, rare_landings, site_maps):
             patch.setattr(module, "LocalExecutor", OwnProcess)
         yield

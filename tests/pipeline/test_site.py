@@ -246,7 +246,7 @@ def test_more_runs_and_one_more_uncertain_number_change_no_site() -> None:
 
 
 def test_ten_times_as_many_flights_leave_the_interval_as_it_is() -> None:
-    _, y, outcome, bed = WEAK.study(60, 12, 3)
+    _, y, outcome, bed = WEAK.study(30, 12, 3)
     left, drawn = np.flatnonzero(outcome == "clear"), study()
     velocity = np.array([[outputs_of(y[run])[name] for name in VELOCITY] for run in left])
     job = Job(DrawnDesign(drawn), {}, StudyFolder.only_read(Path()), None, Silent())  # type: ignore[arg-type]
