@@ -1,4 +1,4 @@
-"""Thirty synthetic studies a setting: the intervals hold the truth as often as they say, as far as thirty can tell.
+"""Forty synthetic studies a setting: the intervals hold the truth as often as they say, as far as forty can tell.
 
 Two hundred studies a setting, and more settings: `benchmarks/estimate_coverage.py`, from which the studies come.
 """
@@ -25,7 +25,7 @@ from estimate_coverage import (
     table,
 )
 
-STUDIES = 30
+STUDIES = 40
 HELD = (
     *("share", "next bed", "mean", "quantile 0.05", "quantile 0.5", "quantile 0.95"),
     *("bed share", "soil share"),
@@ -33,9 +33,9 @@ HELD = (
 
 
 def check(found: dict[str, Row]) -> None:
-    """A nominal 90 % interval holds in 0.78 to 1 of thirty studies (2.2 standard deviations)."""
+    """A nominal 90 % interval holds in 0.78 to 1 of forty studies (2.5 standard deviations)."""
     assert {name: row["held"] for name, row in found.items() if name in HELD and not 0.78 <= row["held"] <= 1.0} == {}
-    # Half a point of share, and the luck of thirty studies: a standard error is a tenth of a half width and less.
+    # Half a point of share, and the luck of forty studies: a standard error is a tenth of a half width and less.
     assert abs(found["share"]["bias"]) < 0.005 + 0.2 * found["share"]["half_width"]
 
 
