@@ -1,12 +1,14 @@
 """Studies that take less time at what the tests of their results do not look at: validation of emulators, pictures,
-processes.
+processes, and what only a power cut shows.
 """
 
+import os
 import pickle
+import sqlite3
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import pytest
@@ -22,16 +24,24 @@ from lithobrake.report import reports
 from lithobrake.report.figures.style import STYLE
 
 
+class Unsynced(sqlite3.Connection):
+    """A file that is as whole as any after a process has died, and no longer after a power cut."""
+
+    def execute(self, sql: str, *values: Any) -> sqlite3.Cursor:
+        """Execute a statement, and wait for no disk."""
+        return super().execute("PRAGMA synchronous = OFF" if sql.startswith("PRAGMA synchronous") else sql, *values)
+
+
 class OwnProcess(LocalExecutor):
-    """A pool whose only worker, where it has one and no limit to keep, is this process: another would import for
-    seconds what it makes runs with for milliseconds.
+    """A pool whose only worker, where it has one, is this process: another would import for seconds what it makes runs
+    with for milliseconds. Limits are not kept: tests/campaign tests them.
     """
 
     def submit_limited(
         self, limits: Limits, function: Callable[..., Any], /, *args: Any, **kwargs: Any
     ) -> "Future[Any]":
         """Make a call here and now, of what a process of its own would be sent."""
-        if self.worker_count > 1 or limits != Limits():
+        if self.worker_count > 1:
             return super().submit_limited(limits, function, *args, **kwargs)
         future = Future[Any]()
         future.set_running_or_notify_cancel()
@@ -68,13 +78,15 @@ def blank_pictures() -> Iterator[None]:
 @contextmanager
 def quick_studies() -> Iterator[None]:
     """Emulators are fitted anew without each quarter of the beds, and not without each bed; pictures are coarse; a
-    study of one worker makes its runs in this process.
+    study of one worker makes its runs in this process; nothing that this process writes waits for the disk.
 
     What an emulator is worth is tested in tests/emulator, how pages look in tests/report, processes in tests/campaign.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(validation, "MOST_FOLDS", 4)
         patch.setitem(STYLE, "savefig.dpi", 50)
+        patch.setattr(os, "fsync", lambda file: None)
+        patch.setattr(sqlite3, "connect", partial(sqlite3.connect, factory=Unsynced))
         for module in (study_run, rare_landings, site_maps):
             patch.setattr(module, "LocalExecutor", OwnProcess)
         yield

@@ -16,6 +16,8 @@ import pytest
 
 import lithobrake
 
+from .syntax_trees import syntax_tree
+
 ROOT = Path(__file__).parents[1]
 ARCHIVE = f"lithobrake-{lithobrake.__version__}"
 # What tests and documents read, beside the sources.
@@ -162,7 +164,7 @@ def test_imports_of_third_parties_are_declared() -> None:
         "tomli_w": "tomli-w", "lazy_loader": "lazy-loader", "yaml": "pyyaml"}  # fmt: skip
     used: set[str] = set()
     for source in (ROOT / "lithobrake").rglob("*.py"):
-        for node in ast.walk(ast.parse(source.read_text())):
+        for node in ast.walk(syntax_tree(source)):
             if isinstance(node, ast.Import):
                 used |= {alias.name.split(".")[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from .syntax_trees import syntax_tree
+
 PACKAGE = Path(__file__).parents[1] / "lithobrake"
 # Anyone may import these: they know nothing of the rest.
 LEAVES = {"files", "vocabulary", "geometry", "compilation"}
@@ -69,14 +71,14 @@ def imported_names(path: Path, only_at_load: bool = False) -> set[str]:
     """The full names that a file imports: modules, and what comes out of them; wherever in the file it does so, or when
     it is itself imported. A face whose names are imported late counts as importing them.
     """
-    tree = ast.parse(path.read_text(encoding="utf-8"))
+    nodes = syntax_tree(path).body
     stub = path.with_suffix(".pyi")
     if stub.exists():
-        tree.body += ast.parse(stub.read_text(encoding="utf-8")).body
+        nodes = nodes + syntax_tree(stub).body
     if only_at_load and path.name != "__init__.py":
-        tree.body = [node for node in tree.body if isinstance(node, ast.Import | ast.ImportFrom)]
+        nodes = [node for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
     found = set()
-    for node in ast.walk(tree):
+    for node in ast.walk(ast.Module(nodes)):
         if isinstance(node, ast.ImportFrom):
             # A stub names what its face hands on, and does so by dots.
             assert node.level == stub.exists(), f"{path} imports by dots; write the full name"

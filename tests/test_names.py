@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from .syntax_trees import syntax_tree
+
 PACKAGE = Path(__file__).parents[1] / "lithobrake"
 # Both are public: what a grain is, and what a body is.
 SAME_NAME_ON_PURPOSE = {"Shape"}
@@ -29,7 +31,7 @@ LOOKED_FOR = {
 @cache
 def trees() -> dict[Path, ast.Module]:
     """The syntax trees of all files of the package."""
-    return {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
+    return {path: syntax_tree(path) for path in sorted(PACKAGE.rglob("*.py"))}
 
 
 def test_each_class_is_defined_once() -> None:

@@ -1,5 +1,6 @@
 """From bounces to inputs: against a posterior in closed form, and what is said where nothing is learnt."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -18,9 +19,19 @@ from lithobrake.analysis import (
 from lithobrake.chaos import Normal, sobol_sequence
 from lithobrake.emulator import Emulator
 
+from ..pipeline.few_terms import few_terms
+from ..quick_studies import quick_studies
+
 # A response that follows the first input and not the second: y = slope * friction + scatter, all normal.
 INPUTS = {"friction": Normal(0.0, 1.0), "density": Normal(0.0, 1.0)}
 SLOPE, SCATTER = 1.0, 0.7
+
+
+@pytest.fixture(scope="module", autouse=True)
+def quick() -> Iterator[None]:
+    """Emulators of these straight laws choose among less."""
+    with quick_studies(), few_terms():
+        yield
 
 
 @pytest.fixture(scope="module")

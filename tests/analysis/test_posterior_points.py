@@ -1,6 +1,7 @@
 """Walkers over laws of which importance sampling finds too few points, beside laws in closed form."""
 
 import importlib.util
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -10,12 +11,22 @@ from lithobrake.analysis import Observation, infer, posterior
 from lithobrake.chaos import Normal, sobol_sequence
 from lithobrake.emulator import Emulator
 
+from ..pipeline.few_terms import few_terms
+from ..quick_studies import quick_studies
+
 INPUTS = {name: Normal(0.0, 1.0) for name in ("friction", "density", "strength")}
 # So far out that few points of the prior come near.
 SEEN = [Observation({"speed": 2.2})]
 needs_emcee = pytest.mark.skipif(
     importlib.util.find_spec("emcee") is None, reason='emcee is not installed: pip install "lithobrake[infer]"'
 )
+
+
+@pytest.fixture(scope="module", autouse=True)
+def quick() -> Iterator[None]:
+    """Emulators of these straight laws choose among less."""
+    with quick_studies(), few_terms():
+        yield
 
 
 @pytest.fixture(scope="module")

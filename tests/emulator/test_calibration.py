@@ -42,13 +42,13 @@ def test_the_conditional_law_is_near_the_truth(truth: Truth, limits: tuple[float
 
 def test_without_an_effect_it_is_as_good_as_drawing_rows() -> None:
     scores, found = [], []
-    for seed in range(4):
+    for seed in range(3):
         model = fitted(NO_SOIL, 150, 15, seed)
         scores.append([fresh_energy_score(one) for one in (model, DrawnRuns(model))])
         found.append(any(model.found_inputs().values()))
     of_model, of_rows = np.mean(scores, axis=0)
     assert of_model <= 1.01 * of_rows
-    # Each finds one with probability 0.1: more than two of four with 0.004, more than one with 0.05.
+    # Each finds one with probability 0.1: more than one of three with 0.03.
     assert sum(found) <= 1
 
 
@@ -96,7 +96,7 @@ def test_bands_hold_on_beds_left_out() -> None:
 
 
 def test_intervals_from_refits_hold_the_truth() -> None:
-    bed_count, refit_count = 12, 20
+    bed_count, refit_count = 12, 10
     truth = replace(WEAK, rho=0.1)
     exact = np.median(replace(truth, capture=0.0).study(100_000, 100_000, 1)[1][:, 0])
     soils = random_soils(1000, np.random.default_rng(0))

@@ -17,7 +17,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 from ..command_line import lithobrake
-from ..quick_studies import one_process
+from ..quick_studies import blank_pictures, one_process
 
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = sorted((ROOT / "examples").glob("notebook_*.py"))
@@ -40,7 +40,9 @@ def printed(name: str, folder: Path, has_workers: bool = False) -> str:
 
 @contextmanager
 def commands_here() -> Iterator[None]:
-    """Have this process do what a script asks `python -m lithobrake` for, with one worker, which is it too."""
+    """Have this process do what a script asks `python -m lithobrake` for, with one worker, which is it too; pictures of
+    reports are blank.
+    """
     elsewhere = subprocess.run
 
     def run(words: list[str], **options: Any) -> subprocess.CompletedProcess[str]:
@@ -50,7 +52,7 @@ def commands_here() -> Iterator[None]:
         assert ended.returncode == 0, ended.stderr
         return ended
 
-    with one_process(), patch.object(subprocess, "run", run):
+    with one_process(), blank_pictures(), patch.object(subprocess, "run", run):
         yield
 
 

@@ -6,13 +6,25 @@ from contextlib import contextmanager
 import pytest
 
 from lithobrake.emulator import fitting, law, mean_law, ridge_ladder
-from lithobrake.pipeline.journeys import emulated_journeys
+from lithobrake.pipeline import site_grid
+from lithobrake.pipeline.answer import emulated_ends, question_answers
+from lithobrake.pipeline.commands import site_maps
+from lithobrake.pipeline.expansion import expansion_samples
+from lithobrake.pipeline.first_touchdown import emulator
+from lithobrake.pipeline.journeys import delivery_options, emulated_journeys, first_arrivals, touchdown_emulator
+
+# Refits of an emulator, where studies have fifty.
+REFITS = 20
+WITH_REFITS = (
+    site_grid, emulated_ends, question_answers, site_maps, expansion_samples, emulator, delivery_options,
+    first_arrivals, touchdown_emulator,
+)  # fmt: skip
 
 
 @contextmanager
 def few_terms() -> Iterator[None]:
-    """Emulators look at few products and powers, try a part of the penalties and of the folds, and average few rungs;
-    they follow each lander of the journeys a few times.
+    """Emulators look at few products and powers, try a part of the penalties and of the folds, average few rungs and
+    are refitted a few times; they follow each lander of the journeys a few times.
 
     tests/emulator tests all of them. Whether it stands inside another of its kind makes no difference.
     """
@@ -25,4 +37,6 @@ def few_terms() -> Iterator[None]:
         patch.setattr(fitting, "OUTCOME_FOLDS", 2)
         patch.setattr(emulated_journeys, "COPIES", 6)
         patch.setattr(law, "INVERSE_PENALTIES", (1e-4, 0.1))
+        for module in WITH_REFITS:
+            patch.setattr(module, "REFIT_COUNT", REFITS)
         yield

@@ -23,7 +23,8 @@ from ..report.page_scripts import answer_of, explorer_data, needs_node
 from ..synthetic_landings import SPEED_LIMIT, WEAK, random_soils
 from .synthetic_lander import SyntheticLander, outputs_of, synthetic_tables
 
-SIDE = {"design": {"run_count": 150, "side_runs": True}}
+# Nothing here looks at hard ground.
+SIDE = {"design": {"run_count": 150, "side_runs": True}, "hard_ground": {"count": 0}}
 
 
 @pytest.fixture(scope="module")

@@ -159,7 +159,7 @@ print("started")
 from pathlib import Path
 import lithobrake
 
-results = lithobrake.run("ball.toml", out="out", workers=2, report=False)
+results = lithobrake.run("ball.toml", out="out", workers=1, report=False)
 print(results.runs.row_count, sorted(set(results.runs["outcome"].tolist())))
 """
 OWN_MODEL = """

@@ -9,6 +9,7 @@ from lithobrake.report import write_report
 from lithobrake.results import open_study
 from lithobrake.results.page_data import PageData, page_results
 
+from ..quick_studies import quick_studies
 from ..shared_folders import shared_folder
 from .finished_studies import asked_study, first_study, paper_study
 
@@ -17,8 +18,9 @@ def finished(factory: pytest.TempPathFactory, study: Callable[[Path], None]) -> 
     """The folder of a study with its page."""
 
     def make(folder: Path) -> None:
-        study(folder)
-        write_report(folder)
+        with quick_studies():
+            study(folder)
+            write_report(folder)
 
     return shared_folder(factory, study.__name__, make)
 

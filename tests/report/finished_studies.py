@@ -23,9 +23,9 @@ from lithobrake.study import check_tables
 from lithobrake.touchdown import Bed
 
 from ..pipeline.expansion.test_expansion_tables import TWO_STEPS, UNCERTAIN, land
+from ..pipeline.few_terms import few_terms
 from ..pipeline.journeys.bouncing_lander import bounce, journey_tables
 from ..pipeline.synthetic_lander import SyntheticLander, synthetic_tables
-from ..quick_studies import quick_studies
 from ..synthetic_landings import Truth
 
 OCTAHEDRON = 0.05 * np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], dtype=float)
@@ -78,7 +78,7 @@ def paper_study(folder: Path) -> None:
 
 def asked_study(folder: Path) -> None:
     """Landers that are followed to rest on Dimorphos, five of which do not come to rest, and all that can be asked."""
-    with quick_studies():
+    with few_terms():
         _finish(folder, journey_tables(**ASKED), bounce_once)
 
 

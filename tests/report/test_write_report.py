@@ -27,13 +27,16 @@ from lithobrake.statements.labels import area
 from lithobrake.study import read_study
 from lithobrake.vocabulary.number_words import number, thousands
 
+from ..quick_studies import quick_studies
+
 
 def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
     paper_folder: Path, paper_page: str, tmp_path: Path
 ) -> None:
     folder = Path(shutil.copytree(paper_folder, tmp_path / "again"))
     told: list[tuple[int, int]] = []
-    path = write_report(folder, lambda done, total: told.append((done, total)))
+    with quick_studies():
+        path = write_report(folder, lambda done, total: told.append((done, total)))
     assert path == folder / "report" / "index.html"
     assert told == [(number, 10) for number in range(10)]
     assert path.read_text(encoding="utf-8") == paper_page

@@ -300,14 +300,20 @@ def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(
     assert len(np.unique(draws, axis=0)) > 25
 
 
+@pytest.fixture(scope="module")
+def served_emulator(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """The emulator of a study, as it is served."""
+    folder = tmp_path_factory.mktemp("emulator")
+    served = ServedStudy(BALL, folder)
+    x = sobol_sequence(served.design.inputs, 64)
+    fit(served.design.inputs, x, x[:, 0]).save(folder / "emulator.json")
+    return served.models()[2]
+
+
 @pytest.mark.parametrize(("name", "said"), [
     ("lander.fricton", "lander.fricton is not a known key; did you mean friction"),
     ("mass", "mass is not a known key"),
 ])  # fmt: skip
-def test_a_key_that_no_run_reads_is_refused_by_the_emulator_too(name: str, said: str, tmp_path: Path) -> None:
-    served = ServedStudy(BALL, tmp_path)
-    x = sobol_sequence(served.design.inputs, 64)
-    fit(served.design.inputs, x, x[:, 0]).save(tmp_path / "emulator.json")
-    emulator = served.models()[2]
+def test_a_key_that_no_run_reads_is_refused_by_the_emulator_too(name: str, said: str, served_emulator: Any) -> None:
     with pytest.raises(ValueError, match=said):
-        emulator.evaluate([0.6, 0.2, 35.0, 0.0], {"inputs": {name: 0.9}})
+        served_emulator.evaluate([0.6, 0.2, 35.0, 0.0], {"inputs": {name: 0.9}})

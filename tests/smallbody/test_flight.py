@@ -338,11 +338,11 @@ def throws(body: Body, speed: float, count: int) -> tuple[np.ndarray, np.ndarray
 @pytest.mark.parametrize(("body", "speed"), [(didymos(), 0.3), (dimorphos(), 0.15)], ids=["didymos", "dimorphos"])
 def test_flights_in_a_binary_against_the_axes_of_the_stars(body, speed):
     """From either body, at any time, to any end; none of the formulas of the turning frame is used on the other side"""
-    position, velocity = throws(body, speed, 8)
-    begin = np.linspace(-3e4, 3e4, 8)
+    position, velocity = throws(body, speed, 5)
+    begin = np.linspace(-3e4, 3e4, 5)
     flights = fly(body, position, velocity, 15_000.0, start_time=begin)
     known = flights.status != "escaped"
-    assert known.sum() >= 6
+    assert known.sum() >= 4
     for i in np.flatnonzero(known):
         status, place = Stars(body).fly(position[i], velocity[i], float(begin[i]), 15_000.0)
         assert status == flights.status[i]

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from ..syntax_trees import syntax_tree
+
 PACKAGE = Path(__file__).parents[2] / "lithobrake"
 # Below this part, which puts single numbers, shares and intervals in words, nothing knows of results.
 WORDING = ("statements", "vocabulary")
@@ -30,7 +32,7 @@ def sentences() -> tuple[tuple[str, str, ast.JoinedStr], ...]:
     """File, skeleton and node of every f-string of the package but for messages of errors."""
     found = []
     for path in sorted(PACKAGE.rglob("*.py")):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
+        tree = syntax_tree(path)
         raised = {id(node) for one in ast.walk(tree) if isinstance(one, ast.Raise) for node in ast.walk(one)}
         name = path.relative_to(PACKAGE).as_posix()
         for node in ast.walk(tree):

@@ -26,6 +26,8 @@ from lithobrake.vocabulary.given_numbers import (
 from lithobrake.vocabulary.number_words import LEVEL, part, percent, rare_percent, span, with_interval
 from lithobrake.vocabulary.outcomes import CapturedFate, FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome
 
+from ..syntax_trees import syntax_tree
+
 
 @pytest.mark.parametrize("value", [1.5, "3", None, True, float("nan"), float("inf"), -1, 8, [3]])
 def test_a_whole_number_is_whole_and_in_its_range(value: object) -> None:
@@ -171,7 +173,7 @@ def test_no_other_file_types_such_a_word():
     # These also name a table of the study file, a table of the site, and a setting of a landing.
     words -= {"impact", "partner", "time_limit"}
     for path in (Path(__file__).parents[2] / "lithobrake").rglob("*.py"):
-        texts = {node.value for node in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(node, ast.Constant)}
+        texts = {node.value for node in ast.walk(syntax_tree(path)) if isinstance(node, ast.Constant)}
         assert path == Path(outcomes.__file__) or not words & texts, path
 
 

@@ -7,9 +7,10 @@ from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, _agrees, _na
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES
 from lithobrake.results.run_results import CountedShare
-from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import JourneyEnd
+
+from ..few_terms import REFITS
 
 BEDS, JOURNEYS, FRESH, STUDIES = 24, 96, 2000, 120
 REST, ESCAPED, PARTNER = JourneyEnd.AT_REST.value, JourneyEnd.ESCAPED.value, JourneyEnd.PARTNER.value
@@ -40,11 +41,11 @@ def study(
     end = drawn(chances(x, slope, 0.4 * random.standard_normal(BEDS)[bed]), random)
     nothing = np.full(JOURNEYS, np.nan)
     table = JourneyTable(end, bed, {}, np.column_stack([nothing] * 3), np.full(JOURNEYS, ""))
-    errors = 0.3 * random.standard_normal(REFIT_COUNT)
-    refit = np.arange(FRESH) % REFIT_COUNT
+    errors = 0.3 * random.standard_normal(REFITS)
+    refit = np.arange(FRESH) % REFITS
     fresh = drawn(chances(random.standard_normal(FRESH), predicted, errors[refit]), random)
     which = np.repeat(np.arange(JOURNEYS), COPIES)
-    own = random.integers(REFIT_COUNT, size=len(which))
+    own = random.integers(REFITS, size=len(which))
     again = drawn(chances(x[which], predicted, errors[own]), random)
     return table, emulated(np.arange(FRESH), refit, fresh), emulated(which, own, again)
 

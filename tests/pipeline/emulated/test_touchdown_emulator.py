@@ -32,12 +32,12 @@ from lithobrake.results.journey_results import EmulatedJourneys
 from lithobrake.study import StudyError, StudySource
 from lithobrake.study.lander_section import sides_down
 from lithobrake.study.reader import check_tables
-from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ...synthetic_landings import STRONG
 from ..ball_studies import drawn, write_ball
+from ..few_terms import REFITS
 from ..journeys.bouncing_lander import TABLES, bounce, journey_tables
 from ..synthetic_lander import SOIL, SyntheticLander, synthetic_tables
 
@@ -122,7 +122,7 @@ def test_the_landers_of_the_journeys_meet_refits_that_have_not_seen_their_bed(re
     for first in range(48):
         same = np.flatnonzero(bed == bed[first]).tolist()
         assert len({frozenset(refits[one]) for one in same}) == 1
-    assert all(len(one) < REFIT_COUNT for one in refits)
+    assert all(len(one) < REFITS for one in refits)
 
 
 def test_every_option_has_its_share_at_rest_on_the_soil_alone(results: StudyResults) -> None:
@@ -133,7 +133,7 @@ def test_every_option_has_its_share_at_rest_on_the_soil_alone(results: StudyResu
     written = read_rows(results.folder / "aim.csv", ("ground", "aim", "status"), "")
     for number, one in enumerate(aim.aims):
         ends = [row["status"] for row in written if int(row["aim"]) == number]
-        assert len(ends) == 2 * REFIT_COUNT
+        assert len(ends) == 2 * REFITS
         assert one.soil.settled.value == pytest.approx(ends.count(JourneyEnd.AT_REST) / len(ends))
         assert one.soil.allowed == (number in (0, 2))
         assert one.hard is None

@@ -30,7 +30,7 @@ TABLES: dict[str, dict[str, Any]] = {
                  "heading_deg": {"distribution": "uniform", "lower": 0.0, "upper": 360.0},
                  "speed": {"distribution": "uniform", "lower": 0.04, "upper": 0.08},
                  "incidence_deg": {"distribution": "uniform", "lower": 0.0, "upper": 40.0}},
-    "journey": {"count": 48, "duration": 172800.0, "emulated_count": 400},
+    "journey": {"count": 48, "duration": 172800.0, "emulated_count": 200},
     "site": {"body": "dimorphos"},
     "sky": {"sun_latitude_deg": {"distribution": "uniform", "lower": -10.0, "upper": 10.0}, "earth_latitude_deg": 0.0,
             "mask_deg": 30.0},

@@ -36,13 +36,13 @@ from lithobrake.results import StudyResults
 from lithobrake.results.site_results import SiteMap
 from lithobrake.results.study_files import json_values, results_in
 from lithobrake.study.source import StudySource
-from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.number_words import LEVEL
 
 from ...smallbody.meshes import sphere_mesh
+from ..few_terms import REFITS
 from .bouncing_lander import bounce, journey_tables
 
-CELLS, LANDERS = 24, 2 * REFIT_COUNT
+CELLS, LANDERS = 24, 100
 
 
 def source_of(**changes: dict[str, Any]) -> StudySource:
@@ -69,7 +69,7 @@ def test_landers_are_delivered_to_every_cell_as_the_study_delivers_them() -> Non
     speed = begin.column("impact.speed").reshape(CELLS, LANDERS)
     assert (speed == speed[0]).all()
     assert np.unique(speed[0]).size == LANDERS
-    assert (np.bincount(begin.refit[:LANDERS], minlength=REFIT_COUNT) == 2).all()
+    assert (np.bincount(begin.refit[:LANDERS], minlength=REFITS) == LANDERS / REFITS).all()
     # A heading from north toward east: the way of a lander, seen from where it comes down.
     heading = np.radians(begin.site["heading_deg"])
     up, ahead = begin.axes[:, 2], begin.axes[:, 0]
@@ -98,8 +98,8 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     # Of the first cell eleven in a hundred are unknown, of the second ten; half of the third escapes.
     end[0, :11], beyond[0, :8], beyond[0, 8:11] = "unknown", "surface.gravity", "impact.speed"
     end[1, :10], beyond[1, :10] = "unknown", "surface.slope_deg"
-    end[2, :REFIT_COUNT] = "escaped"
-    refit, time = np.tile(np.arange(LANDERS) % REFIT_COUNT, (4, 1)), np.tile(np.arange(LANDERS) * 60.0, (4, 1))
+    end[2, : LANDERS // 2] = "escaped"
+    refit, time = np.tile(np.arange(LANDERS) % REFITS, (4, 1)), np.tile(np.arange(LANDERS) * 60.0, (4, 1))
     landers = SiteLanders(end, time, 0.1 * time, refit, beyond)
     ground = SiteGround(np.tile(np.linspace(0.0, 24.0, 24), (4, 1)), np.full((4, 24), 5e-5), {})
     fitted = Refits(bed_count=12, run_count=100, why=None)
@@ -158,10 +158,10 @@ def test_emulator_and_landings_are_compared_lander_by_lander(site_map: SiteMap, 
 
 def test_bounds_hold_whatever_becomes_of_landers_of_unknown_end() -> None:
     fitted = Refits(bed_count=12, run_count=100, why=None)
-    refit, met = np.repeat(np.arange(REFIT_COUNT), 4), np.tile([True, True, False, False], REFIT_COUNT)
+    refit, met = np.repeat(np.arange(REFITS), 4), np.tile([True, True, False, False], REFITS)
     plain = share_of_known(met, np.ones(len(met), dtype=bool), refit, fitted)
     # One lander in four is unknown, and did not meet it as far as one sees.
-    lacking = share_of_known(met, np.tile([True, True, True, False], REFIT_COUNT), refit, fitted)
+    lacking = share_of_known(met, np.tile([True, True, True, False], REFITS), refit, fitted)
     assert plain.value == 0.5
     assert (lacking.value, lacking.lower) == (pytest.approx(2.0 / 3.0), plain.lower)
     assert lacking.upper > 0.75
@@ -230,7 +230,7 @@ def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, 
 
 
 @pytest.mark.parametrize(("words", "message"), [
-    (["--landers", "75"], "--landers is 75; allowed: multiples of 50 from 100; take 200"),
+    (["--landers", "75"], f"--landers is 75; allowed: multiples of {REFITS} from {2 * REFITS}; take 200"),
     (["--cells", "3"], "cells is 3"),
     (["--cells", "20000", "--landers", "200"], "makes 4000000 landers; allowed: up to 2000000"),
 ])  # fmt: skip

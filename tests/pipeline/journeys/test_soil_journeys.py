@@ -21,7 +21,7 @@ from lithobrake.results import StudyResults
 from lithobrake.smallbody import Body, Flights, fly
 from lithobrake.study import StudySource, read_study
 
-from .soil_journeys import EDGES, MASS, STUDY
+from .soil_journeys import EDGES, STUDY
 
 TABLES = ("journeys.csv", "touchdowns.csv", "arcs.csv")
 Row = dict[str, Any]
@@ -93,9 +93,15 @@ def test_the_same_seed_gives_the_same_bits(study: StudyResults, tmp_path: Path) 
     shutil.copytree(study.folder, again)
     for name in (*TABLES, *(path.name for path in again.glob("runs.sqlite*"))):
         (again / name).unlink()
-    run_study(StudySource.read(study.folder / "study.toml"), again, until="runs", worker_count=1)
+    # The first two of the six journeys, of which the others change nothing.
+    text = (study.folder / "study.toml").read_text(encoding="utf-8")
+    for path in (tmp_path / "two.toml", again / "study.toml"):
+        path.write_text(text.replace("count = 6,", "count = 2,"), encoding="utf-8")
+    run_study(StudySource.read(tmp_path / "two.toml"), again, until="runs", worker_count=1)
     for name in TABLES:
-        assert (again / name).read_bytes() == (study.folder / name).read_bytes(), name
+        found, known = ((folder / name).read_bytes().splitlines() for folder in (again, study.folder))
+        assert 2 < len(found) < len(known)
+        assert found == known[: len(found)], name
 
 
 def test_every_journey_ends_and_most_fly_between_touchdowns(study: StudyResults) -> None:
@@ -194,13 +200,14 @@ def turned(attitude: np.ndarray, spin: np.ndarray, duration: float) -> tuple[np.
     Euler's equations in the axes of a homogeneous box, beside the nine components of the attitude.
     """
     a, b, c = (edge * edge for edge in EDGES)
-    inertia = MASS / 12.0 * np.array([b + c, a + c, a + b])
+    # Differences of two moments of inertia over the third.
+    share = (c - b) / (b + c), (a - c) / (a + c), (b - a) / (a + b)
 
     def rate(_: float, state: np.ndarray) -> np.ndarray:
-        omega, turn = state[:3], state[3:].reshape(3, 3)
-        x, y, z = omega
+        turn = state[3:].reshape(3, 3)
+        x, y, z = state[:3].tolist()
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        return np.concatenate([np.cross(inertia * omega, omega) / inertia, (turn @ cross).ravel()])
+        return np.concatenate([[share[0] * y * z, share[1] * z * x, share[2] * x * y], (turn @ cross).ravel()])
 
     start = np.concatenate([attitude.T @ spin, attitude.ravel()])
     end = solve_ivp(rate, (0.0, duration), start, method="DOP853", rtol=1e-12, atol=1e-12).y[:, -1]
@@ -214,7 +221,7 @@ def test_attitude_and_spin_at_an_impact_are_those_of_a_flight_without_torque(stu
     checked = 0
     for (journey, number), (before, arc, after) in every.items():
         # Of the first touchdown no flight has the velocity that comes in; long turns would take the integrator seconds.
-        if number == 0 or before["spin_out"] * (arc["end_s"] - arc["begin_s"]) > 300.0:
+        if number == 0 or before["spin_out"] * (arc["end_s"] - arc["begin_s"]) > 150.0:
             continue
         axes = frame(body, flown(study, body, every[journey, number - 1].arc))
         left = vector(before, "velocity_out") @ axes

@@ -11,7 +11,6 @@ import pytest
 import lithobrake
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.first_touchdown.bounce_laws import implied
-from lithobrake.pipeline.first_touchdown.emulator import REFIT_COUNT
 from lithobrake.pipeline.journeys.landers import ways_from_aims
 from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values
@@ -21,6 +20,7 @@ from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
 
 from ...synthetic_landings import WEAK
+from ..few_terms import REFITS
 from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 ARRIVAL = {
@@ -57,7 +57,7 @@ def found(results: StudyResults) -> dict[str, Any]:
 def test_every_aim_has_its_shares_on_both_grounds_with_intervals(results: StudyResults, found: dict[str, Any]) -> None:
     assert [aim["values"] for aim in found["aims"]] == [[v, i] for v in (0.1, 0.3) for i in (10.0, 40.0, 60.0)]
     rows = read_rows(results.folder / "aim.csv", ("ground", "aim", "status"), "")
-    assert len(rows) == 2 * 6 * found["lander_count"] == 2 * 6 * 2 * REFIT_COUNT
+    assert len(rows) == 2 * 6 * found["lander_count"] == 2 * 6 * 2 * REFITS
     for number, aim in enumerate(found["aims"]):
         for ground in ("soil", "hard"):
             ends = [row["status"] for row in rows if row["ground"] == ground and int(row["aim"]) == number]

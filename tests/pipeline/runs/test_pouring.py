@@ -26,6 +26,7 @@ from lithobrake.touchdown import bed_library
 
 from ...command_line import lithobrake
 from ...few_grains import few_grains
+from ...quick_studies import OwnProcess
 
 TEXT = few_grains(30, 0.54, 0.05).replace("[grain]", "bed_count = 3\n[grain]") + "[journey]\ntouchdowns = 1\n"
 STUDY = check_tables(tomllib.loads(TEXT), Path())
@@ -126,7 +127,7 @@ def test_beds_of_the_library_ask_no_worker_and_several_failures_are_one_sentence
     assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path, NAMES[0], NAMES[2])
     Broken(monkeypatch, 1, 2)
     with (
-        LocalExecutor(1) as executor,
+        OwnProcess(1) as executor,
         pytest.raises(ValueError, match=r"^beds 2, 3 of 3 cannot be poured \(surface\.gravity"),
     ):
         pour(tmp_path, NAMES[1:], executor)
