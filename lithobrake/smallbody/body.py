@@ -16,6 +16,9 @@ from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 # Each takes the error of an orbit's distance down by the part that flattening has in the attraction, a few percent.
 ORBIT_ITERATIONS = 10
+# Escape speed [m/s] above which a partner is a planet, on which landers are not followed: that of small bodies in pairs
+# is below it, and what arrives faster does not bounce but breaks.
+FASTEST_LANDING = 300.0
 
 
 @dataclass(frozen=True)
@@ -261,6 +264,11 @@ class Partner:
             )
         if self.body.partner is not None:
             raise ValueError(f"{self.body.name}: a partner has no partner of its own; give it partner=None.")
+
+    @property
+    def is_planet(self) -> bool:
+        """Whether it is too heavy for landings: nothing arrives on it slower than FASTEST_LANDING."""
+        return 2.0 * self.body.gravitational_parameter / self.body.shape.radius > FASTEST_LANDING**2
 
     def orbit(self, parameter: Entry, spin_rate: Entry, flattening: float) -> Orbit[Entry]:
         """Its motion in the frame of a body of this G mass [m3/s2] and spin rate [rad/s]: numbers, or one a flight.

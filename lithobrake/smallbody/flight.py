@@ -38,6 +38,7 @@ def fly(
     mass: ArrayLike | None = None,
     spin_period: ArrayLike | None = None,
     tolerance: float | None = None,
+    near_partner: bool = False,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Flights:
@@ -55,6 +56,7 @@ def fly(
     tolerance            error that one step may make: this part of the body's radius in position, and the same part
                          of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with
                          the table 3e-6, whose own error is larger
+    near_partner         with the table: that of the partner is as fine as the body's, for flights that begin on it
     threads              defaults to the number of cores; the result does not depend on it
     progress             called with the finished fraction of the flights, from this thread
 
@@ -81,7 +83,8 @@ def fly(
     refuse_beyond(body.rotation, body.spin_period, periods, begin, begin + times)
     fixed, starts = _in_both_frames(body, starts, frame, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, fixed, starts, dynamics.orbit, begin)
-    sources, ends, turning = _sources(body, gravity), FlightEnds.of_count(count), turning_of(body.rotation)
+    sources = _sources(body, gravity, near_partner)
+    ends, turning = FlightEnds.of_count(count), turning_of(body.rotation)
 
     def part(first: int) -> None:
         piece = slice(first, first + CHUNK)
@@ -106,16 +109,18 @@ def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float
     return finite_number("tolerance", tolerance, at_least=1e-13, at_most=1e-3)
 
 
-def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:
+def _sources(body: Body, gravity: str, near_partner: bool) -> tuple[Gravity, Gravity]:
     """What attraction.attract reads of the body and of its partner; without one the body stands in, and is not asked.
 
-    Kernels take both as one type, so a partner's table may be coarser but is a table too.
+    Kernels take both as one type, so a partner's table is coarser where flights are rarely near but is a table too.
     """
     own = body.shape.gravity if gravity == "exact" else body.shape.tabled_gravity
     if body.partner is None:
         return own, own
     other = body.partner.body.shape
-    return own, other.gravity if gravity == "exact" else other.distant_gravity
+    if gravity == "exact":
+        return own, other.gravity
+    return own, other.tabled_gravity if near_partner else other.distant_gravity
 
 
 def _dynamics(body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.float64], tolerance: float) -> Dynamics:

@@ -1,7 +1,9 @@
 """How flights ended."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,8 +76,22 @@ class Flights:
     def __len__(self) -> int:
         return len(self.status)
 
+    @classmethod
+    def together(cls, parts: "Sequence[Flights]", places: Sequence[NDArray[np.int64]]) -> "Flights":
+        """All flights of some sets about one body; places: of those of each set among all."""
+        if len(parts) == 1:
+            return parts[0]
+        order = np.argsort(np.concatenate(places))
+
+        def joined(holders: Sequence[Any], kind: Any) -> list[Any]:
+            arrays = [[getattr(one, field.name) for one in holders] for field in fields(kind)]
+            return [np.concatenate(one)[order] for one in arrays if isinstance(one[0], np.ndarray)]
+
+        start = StartStates(*joined([one.start for one in parts], StartStates))
+        return cls(parts[0].body, start, *joined(parts, cls))
+
     @cached_property
-    def _on_ground(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def on_ground(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position [m] and velocity [m/s] at the end in the frame of the ground: the partner's where that was hit."""
         position, velocity = self.position.copy(), self.velocity.copy()
         hit = self.status == FlightStatus.PARTNER
@@ -90,28 +106,33 @@ class Flights:
     @cached_property
     def latitude(self) -> NDArray[np.float64]:
         """Planetocentric latitude at the end [deg]."""
-        return self.body.shape.latitude_longitude(self._on_ground[0])[0]
+        return self.body.shape.latitude_longitude(self.on_ground[0])[0]
 
     @cached_property
     def longitude(self) -> NDArray[np.float64]:
         """East longitude at the end, in (-180, 180] [deg]."""
-        return self.body.shape.latitude_longitude(self._on_ground[0])[1]
+        return self.body.shape.latitude_longitude(self.on_ground[0])[1]
 
     @cached_property
     def impact_speed(self) -> NDArray[np.float64]:
         """Speed relative to the ground at the impact [m/s], nan without one."""
-        return np.where(self.facet >= 0, np.linalg.norm(self._on_ground[1], axis=1), np.nan)
+        return np.where(self.facet >= 0, np.linalg.norm(self.on_ground[1], axis=1), np.nan)
 
     @cached_property
-    def incidence(self) -> NDArray[np.float64]:
-        """Angle of the incoming velocity from the facet's inward normal [rad], nan without an impact."""
+    def normals(self) -> NDArray[np.float64]:
+        """Outward normal of the facet that was hit, in the frame of its ground, [count, 3]; nan without an impact."""
         normals = np.full((len(self), 3), np.nan)
         hit = self.status == FlightStatus.IMPACT
         normals[hit] = self.body.shape.normals[self.facet[hit]]
         if self.body.partner is not None:
             hit = self.status == FlightStatus.PARTNER
             normals[hit] = self.body.partner.body.shape.normals[self.facet[hit]]
-        inward = -np.einsum("fi,fi->f", self._on_ground[1], normals)
+        return normals
+
+    @cached_property
+    def incidence(self) -> NDArray[np.float64]:
+        """Angle of the incoming velocity from the facet's inward normal [rad], nan without an impact."""
+        inward = -np.einsum("fi,fi->f", self.on_ground[1], self.normals)
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.arccos(np.clip(inward / self.impact_speed, -1.0, 1.0))
 

@@ -189,7 +189,7 @@ def states(speed: list[float], outward: float = -1e-5, spin: float = 0.0) -> Imp
     angle, axes = np.full(count, 60.0), np.tile(np.eye(3), (count, 1, 1))
     spins, pull = np.tile([0.0, spin, 0.0], (count, 1)), np.tile([0.0, 0.0, outward], (count, 1))
     return ImpactStates(
-        np.zeros(count, dtype=np.int64), number, np.zeros((count, 3)), axes, np.array(speed), angle, angle, spins,
+        np.zeros(count, dtype=np.int64), number, number, np.zeros((count, 3)), axes, np.array(speed), angle, angle, spins,
         [None] * count, pull, np.zeros((count, 3)), nothing, nothing, nothing, nothing, nothing,
     )  # fmt: skip
 
