@@ -12,7 +12,7 @@ from lithobrake.geometry.attitude import from_frame
 from lithobrake.smallbody.grounds import LANDED, BodyGround, Moments, grounds_of
 from lithobrake.smallbody.touchdown import FAILED, Answers, ImpactStates, Touchdown, into_frame, out_of_frame
 from lithobrake.vocabulary.array_types import Array, Integers
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import RESTS, FlightStatus, JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
 if TYPE_CHECKING:
@@ -225,7 +225,7 @@ class Landers:
             word, attitude = str(answers.outcome[place]), answers.attitude[place]
             if self.end[lander] == JourneyEnd.FAILED:
                 self.reason[lander] = answers.reason[place] if word == FAILED else f"a touchdown ended as {word}"
-            elif self.end[lander] in (JourneyEnd.AT_REST, JourneyEnd.PARTNER) and attitude is not None:
+            elif self.end[lander] in RESTS and attitude is not None:
                 self.attitude[lander] = from_frame(self.axes[lander]) * attitude
 
     def _leaving(self, going: Integers, rise: Array, velocity: Array) -> tuple[Array, Array]:

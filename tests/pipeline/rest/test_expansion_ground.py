@@ -149,7 +149,7 @@ def arrivals(friction: list[float], hull: float = 0.4) -> Arrivals:
     """Landers whose grains have these frictions."""
     rows, count = [{"grain.friction": one, "lander.friction": hull} for one in friction], len(friction)
     nothing = np.zeros(count)
-    return Arrivals(np.arange(count), rows, {}, np.zeros((count, 3)), np.zeros((count, 3, 3)), nothing, nothing)
+    return Arrivals(np.arange(count), rows, {}, np.zeros((count, 3)), np.zeros((count, 3, 3)), nothing, nothing, nothing)
 
 
 NOBODY: Any = None
