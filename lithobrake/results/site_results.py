@@ -86,6 +86,8 @@ class SiteResults:
     """name of the other body of a binary, or null"""
     partner_distance_m: float | None
     """between the two centres [m], or null"""
+    lands_on_partner: bool
+    """whether landers are followed on the partner; false: there is none, or it is a planet, where a journey ends"""
     latitude_deg: float
     """planetocentric latitude of the aim point"""
     longitude_deg: float
@@ -144,7 +146,7 @@ class SiteEnds:
     at_rest: Share
     """landers at rest within the longest journey"""
     partner: Share
-    """landers that come down on the partner"""
+    """landers at rest on the partner"""
     escaped: Share
     """landers that escape"""
     under_way: Share

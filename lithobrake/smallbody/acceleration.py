@@ -135,9 +135,9 @@ class Dynamics(NamedTuple):
     length_tolerance: Floats  # what a step may be wrong by in position [m]
     speed_tolerance: Floats  # the same in velocity [m/s]
 
-    def of_flights(self, piece: slice) -> "Dynamics":
-        orbit = Orbit(*(array[piece] for array in self.orbit))
-        return Dynamics(orbit, *(array[piece] for array in self[1:]))
+    def of_flights(self, which: Integers) -> "Dynamics":
+        orbit = Orbit(*(array[which] for array in self.orbit))
+        return Dynamics(orbit, *(array[which] for array in self[1:]))
 
 
 class Forces(NamedTuple):

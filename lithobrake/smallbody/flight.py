@@ -17,7 +17,7 @@ from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
 from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, integrate_flights
 from lithobrake.smallbody.rotation import into_frame, out_of_frame, refuse_beyond, turning_of
 from lithobrake.smallbody.shape import Shape
-from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.array_types import Floats, Integers
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 CHUNK = 1024  # flights that a thread takes at a time
@@ -38,7 +38,6 @@ def fly(
     mass: ArrayLike | None = None,
     spin_period: ArrayLike | None = None,
     tolerance: float | None = None,
-    near_partner: bool = False,
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Flights:
@@ -56,7 +55,6 @@ def fly(
     tolerance            error that one step may make: this part of the body's radius in position, and the same part
                          of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with
                          the table 3e-6, whose own error is larger
-    near_partner         with the table: that of the partner is as fine as the body's, for flights that begin on it
     threads              defaults to the number of cores; the result does not depend on it
     progress             called with the finished fraction of the flights, from this thread
 
@@ -83,15 +81,18 @@ def fly(
     refuse_beyond(body.rotation, body.spin_period, periods, begin, begin + times)
     fixed, starts = _in_both_frames(body, starts, frame, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, fixed, starts, dynamics.orbit, begin)
-    sources = _sources(body, gravity, near_partner)
     ends, turning = FlightEnds.of_count(count), turning_of(body.rotation)
+    # A flight that begins on the partner is near it for long, and reads its gravity from the finer table.
+    near = (phase[:, 1] == ON_SURFACE) & (gravity == "table")
+    sources = {one: _sources(body, gravity, near_partner=one) for one in np.unique(near).tolist()}
 
-    def part(first: int) -> None:
-        piece = slice(first, first + CHUNK)
-        forces, out = Forces(*sources, dynamics.of_flights(piece), turning), ends.of_flights(piece)
-        integrate_flights(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
+    def part(which: Integers) -> None:
+        forces = Forces(*sources[bool(near[which[0]])], dynamics.of_flights(which), turning)
+        out = FlightEnds.of_count(len(which))
+        integrate_flights(starts[which], begin[which], times[which], phase[which], forces, grounds, out)
+        ends.put(which, out)
 
-    _run(part, count, threads, progress)
+    _run(part, _pieces(near), threads, progress)
     _refuse_failed(starts, ends, tolerance)
     begins = StartStates(begin, fixed[:, :3].copy(), fixed[:, 3:].copy(), masses, periods)
     place, rate = out_of_frame(body.rotation, ends.state[:, :3], ends.state[:, 3:], begin + ends.time)
@@ -109,7 +110,13 @@ def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float
     return finite_number("tolerance", tolerance, at_least=1e-13, at_most=1e-3)
 
 
-def _sources(body: Body, gravity: str, near_partner: bool) -> tuple[Gravity, Gravity]:
+def _pieces(near: NDArray[np.bool_]) -> list[Integers]:
+    """Numbers of the flights that a thread takes at a time; those of one piece begin all near the partner, or none."""
+    alike = np.flatnonzero(~near), np.flatnonzero(near)
+    return [which[first : first + CHUNK] for which in alike for first in range(0, len(which), CHUNK)]
+
+
+def _sources(body: Body, gravity: str, *, near_partner: bool) -> tuple[Gravity, Gravity]:
     """What attraction.attract reads of the body and of its partner; without one the body stands in, and is not asked.
 
     Kernels take both as one type, so a partner's table is coarser where flights are rarely near but is a table too.
@@ -282,18 +289,20 @@ def _phase(shape: Shape, position: NDArray[np.float64], slack: float, name: str)
 
 
 def _run(
-    part: Callable[[int], None], count: int, threads: int | None, progress: Callable[[float], None] | None
+    part: Callable[[Integers], None],
+    pieces: list[Integers],
+    threads: int | None,
+    progress: Callable[[float], None] | None,
 ) -> None:
     workers = os.cpu_count() or 1 if threads is None else whole_number("threads", threads, 1)
-    firsts = range(0, count, CHUNK)
-    if min(workers, len(firsts)) <= 1:
-        for number, first in enumerate(firsts, 1):
-            part(first)
+    if min(workers, len(pieces)) <= 1:
+        for number, piece in enumerate(pieces, 1):
+            part(piece)
             if progress:
-                progress(number / len(firsts))
+                progress(number / len(pieces))
         return
     with ThreadPoolExecutor(workers) as pool:
-        futures: list[Any] = [pool.submit(part, first) for first in firsts]
+        futures: list[Any] = [pool.submit(part, piece) for piece in pieces]
         try:
             for number, future in enumerate(futures, 1):
                 future.result()

@@ -1,9 +1,7 @@
 """How flights ended."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,20 +73,6 @@ class Flights:
 
     def __len__(self) -> int:
         return len(self.status)
-
-    @classmethod
-    def together(cls, parts: "Sequence[Flights]", places: Sequence[NDArray[np.int64]]) -> "Flights":
-        """All flights of some sets about one body; places: of those of each set among all."""
-        if len(parts) == 1:
-            return parts[0]
-        order = np.argsort(np.concatenate(places))
-
-        def joined(holders: Sequence[Any], kind: Any) -> list[Any]:
-            arrays = [[getattr(one, field.name) for one in holders] for field in fields(kind)]
-            return [np.concatenate(one)[order] for one in arrays if isinstance(one[0], np.ndarray)]
-
-        start = StartStates(*joined([one.start for one in parts], StartStates))
-        return cls(parts[0].body, start, *joined(parts, cls))
 
     @cached_property
     def on_ground(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -271,25 +271,19 @@ class Landers:
         """Fly landers to their next impact for what is left of their journeys; starts [m], [m/s], fixed to the ground.
         """
         from lithobrake.smallbody.flight import fly
-        from lithobrake.smallbody.flight_results import Flights
 
-        parts, places = [], []
+        start, speed, when = np.empty_like(place), np.empty_like(velocity), self.moments(going)
         for ground, there in self.on_each(going):
-            which, when = going[there], self.moments(going[there])
-            states = ground.states_of_flights(place[there], velocity[there], when)
-            one = fly(
-                *(self.body, *states, self.duration - self.time[which]),
-                gravity=self.gravity,
-                start_time=when.time,
-                mass=when.mass,
-                spin_period=when.spin_period,
-                near_partner=ground is not self.grounds[0],
-                # One flight has nothing to share among threads, and starting them would take longer.
-                threads=1 if len(which) == 1 else self.threads,
-            )
-            parts.append(one)
-            places.append(there)
-        flights = Flights.together(parts, places)
+            start[there], speed[there] = ground.states_of_flights(place[there], velocity[there], when.at(there))
+        flights = fly(
+            *(self.body, start, speed, self.duration - self.time[going]),
+            gravity=self.gravity,
+            start_time=when.time,
+            mass=when.mass,
+            spin_period=when.spin_period,
+            # One flight has nothing to share among threads, and starting them would take longer.
+            threads=1 if len(going) == 1 else self.threads,
+        )
         self._end_flights(going, flights, place)
         return flights
 

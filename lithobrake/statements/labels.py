@@ -21,6 +21,7 @@ from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, TOUCHDOWN
 if TYPE_CHECKING:
     from lithobrake.results.dispersion import RestRegion
     from lithobrake.results.run_results import VarianceParts
+    from lithobrake.results.site_results import SiteResults
 
 FAILED = "failed"
 
@@ -98,6 +99,8 @@ GROUND_WORDS = {
     "hard": "hard ground", "equivalent": "hard ground like the soil", "expansion": "soil by the expansion",
 }  # fmt: skip
 BODIES = {"didymos": "Didymos", "dimorphos": "Dimorphos"}
+# A partner that the study file gives no name.
+NAMELESS = "partner"
 # The parts of a variance, in the order of its bar.
 PART_WORDS = {
     "soil": "soil, at least", "arrival": "delivery, at least", "attitude": "attitude, at least", "bed": "bed",
@@ -155,6 +158,18 @@ def input_words(name: str) -> str:
         field, field.removeprefix("inputs.").removesuffix("_deg").replace("_", " ").replace(".", " ")
     )
     return words + {"grain": " of the grains", "lander": " of the lander", "impact": " at impact"}.get(section, "")
+
+
+def partner_words(site: "SiteResults") -> str:
+    """The other body of the binary by its name; the partner where it has none."""
+    named = site.partner is not None and site.partner != NAMELESS
+    return BODIES.get(str(site.partner), str(site.partner)) if named else "the partner"
+
+
+def end_words(site: "SiteResults") -> dict[str, str]:
+    """As END_WORDS, with the partner by its name, as "at rest on Didymos"."""
+    there = partner_words(site)
+    return END_WORDS | {JourneyEnd.PARTNER: f"at rest on {there}" if site.lands_on_partner else f"on {there}"}
 
 
 def output_words(name: str) -> str:

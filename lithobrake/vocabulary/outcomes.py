@@ -67,7 +67,11 @@ class JourneyEnd(_Ending):
 
     AT_REST = "at_rest", "The lander rests where the ground holds it.", "at rest"
     ESCAPED = "escaped", FlightStatus.ESCAPED.sentence, "escaped"
-    PARTNER = "partner", "The lander rests on the other body of the binary, or hit it as a planet.", "on the partner"
+    PARTNER = (
+        "partner",
+        "The lander rests on the other body of the binary; on a planet it is not followed.",
+        "at rest on the partner",
+    )
     UNDER_WAY = "under_way", "The lander was still under way at the time limit.", "under way"
     FAILED = "failed", "A landing or flight of the journey failed.", "failed"
 
