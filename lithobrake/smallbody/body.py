@@ -1,7 +1,7 @@
 """A small body: a shape with a mass that turns, alone or with a partner."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -223,6 +223,17 @@ class Body:
             latitude[moved], longitude[moved] = self.shape.latitude_longitude(there)
         origin, axes = self.local_frame(latitude, longitude, heading)
         return origin[index.reshape(-1)], axes[index.reshape(-1)]
+
+    @property
+    def seen_from_partner(self) -> "Body":
+        """The other body of the binary with this one as its partner, at the numbers of both, from a time 0 on.
+
+        Its axes turn uniformly, and so do those of this body there. Raises ValueError for a body that is alone.
+        """
+        if self.partner is None:
+            raise ValueError(f"{self.name} has no partner; allowed: a body of a binary.")
+        there, alone = self.partner, replace(self, partner=None, rotation=None)
+        return replace(there.body, partner=Partner(alone, there.period, there.facing_deg, there.longitude_deg))
 
     def partner_time(self, longitude_deg: ArrayLike, spin_period: ArrayLike) -> NDArray[np.float64]:
         """Times [s] at which the partner stands over these longitudes, for spin periods [s], all of shape [count].

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.rotation import into_frame
+from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.grounds import Moments, PartnerGround
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.plain_text import html_table
 
@@ -78,13 +78,11 @@ class Flights:
     def on_ground(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position [m] and velocity [m/s] at the end in the frame of the ground: the partner's where that was hit."""
         position, velocity = self.position.copy(), self.velocity.copy()
-        hit = self.status == FlightStatus.PARTNER
-        if hit.any():
-            parameter, spin_rate = GRAVITATIONAL_CONSTANT * self.start.mass, 2.0 * np.pi / self.start.spin_period
-            orbit = self.body.orbit_with(parameter[hit], spin_rate[hit])
-            time = (self.start.time + self.time)[hit]
-            in_frame = into_frame(self.body.rotation, position[hit], velocity[hit], time)
-            position[hit], velocity[hit] = orbit.seen_from_partner(*in_frame, time)
+        hit = np.flatnonzero(self.status == FlightStatus.PARTNER)
+        if len(hit) and self.body.partner is not None:
+            when = Moments(self.start.time + self.time, self.start.mass, self.start.spin_period).at(hit)
+            ground = PartnerGround(self.body.partner.body, self.body)
+            position[hit], velocity[hit] = ground.states_on_ground(position[hit], velocity[hit], when)
         return position, velocity
 
     @cached_property

@@ -57,6 +57,10 @@ class BodyGround:
         """States along the axes of flights from those along the axes of the ground: [m], [m/s], all [count, 3]."""
         return position, velocity
 
+    def states_on_ground(self, position: Array, velocity: Array, when: Moments) -> tuple[Array, Array]:
+        """The reverse of `states_of_flights`."""
+        return position, velocity
+
     def turns(self, when: Moments) -> Array | None:
         """Matrices [count, 3, 3] that turn components along axes of flights into those along axes of the ground."""
         return None
@@ -87,6 +91,10 @@ class PartnerGround(BodyGround):
     def states_of_flights(self, position: Array, velocity: Array, when: Moments) -> tuple[Array, Array]:
         uniform = self._orbit(when).seen_from_body(position, velocity, when.time)
         return rotation.out_of_frame(self.around.rotation, *uniform, when.time)
+
+    def states_on_ground(self, position: Array, velocity: Array, when: Moments) -> tuple[Array, Array]:
+        uniform = rotation.into_frame(self.around.rotation, position, velocity, when.time)
+        return self._orbit(when).seen_from_partner(*uniform, when.time)
 
     def turns(self, when: Moments) -> Array:
         orbit = self._orbit(when)

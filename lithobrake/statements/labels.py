@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.known_bodies import printed_name
 from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.number_words import at_level, interval_digits, number, percent, span
 from lithobrake.vocabulary.outcomes import (
@@ -162,8 +163,7 @@ def input_words(name: str) -> str:
 
 def partner_words(site: "SiteResults") -> str:
     """The other body of the binary by its name; the partner where it has none."""
-    named = site.partner is not None and site.partner != NAMELESS
-    return BODIES.get(str(site.partner), str(site.partner)) if named else "the partner"
+    return "the partner" if site.partner in (None, NAMELESS) else printed_name(str(site.partner))
 
 
 def end_words(site: "SiteResults") -> dict[str, str]:

@@ -202,6 +202,8 @@ def sky_results(study: Study, folder: StudyFolder, table: JourneyTable) -> dict[
     if not study.sky.bodies or not table.rests.any():
         return {}
     rows = read_rows(folder / SKY_FILE, ("journey", "body", "day_fraction", "least_day_fraction"), AGAIN)
+    # Rows of landers on the partner are left out here.
+    rows = [row for row in rows if table.rests[int(row["journey"])]]
     return {name: _of(study, [row for row in rows if row["body"] == name], table) for name in study.sky.bodies}
 
 

@@ -190,8 +190,8 @@ class Descents:
                 states = self.position[landers], self.axes[landers], self._moments(landers)
                 # Regions with a soil of their own are those of the body of the site.
                 rows = rows if number else Soils(self.site).on_soil(rows, self.position[landers])
-                for row, met in zip(there.tolist(), arrivals.on_ground(ground, rows, *states), strict=True):
-                    found[row] = met
+                for place, met in zip(there.tolist(), arrivals.on_ground(ground, rows, *states), strict=True):
+                    found[place] = met
         return found
 
     def _moments(self, landers: np.ndarray) -> "Moments":
@@ -220,7 +220,6 @@ class Descents:
             attitude, spin = self._onto_partner(lander, attitude, spin)
         return arrivals.attitude_inputs(self.axes[lander], row[IMPACT_AZIMUTH], attitude, spin)
 
-
     def _onto_partner(self, lander: int, attitude: Rotation, spin: np.ndarray) -> tuple[Rotation, np.ndarray]:
         """Attitude and spin [rad/s] of a lander against the ground of the partner, from those against the body's."""
         from lithobrake.smallbody.grounds import grounds_of
@@ -244,9 +243,8 @@ def _met_ground(study: Study, flights: "Flights", down: np.ndarray, first: int) 
     """Axes and incidences of the first touchdowns of the landers that are down; axes of the others: the body's."""
     axes, incidence = np.tile(np.eye(3), (len(flights), 1, 1)), np.array(flights.incidence)
     journeys = (first + np.flatnonzero(down)).tolist()
-    axes[down], incidence[down] = arrivals.met_ground(
-        study, flights.on_ground[1][down], flights.normals[down], incidence[down], lambda: arrivals.first_uniforms(study, journeys)
-    )
+    met = flights.on_ground[1][down], flights.normals[down], incidence[down]
+    axes[down], incidence[down] = arrivals.met_ground(study, *met, lambda: arrivals.first_uniforms(study, journeys))
     return axes, incidence
 
 

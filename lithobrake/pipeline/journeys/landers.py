@@ -82,7 +82,8 @@ class StudyLanders(Landers):
 
     @property
     def ways_from_aims(self) -> Array:
-        """Ways over the ground from the aim points [m], as if the body were a ball of the radius there; NaN elsewhere."""
+        """Ways over the ground from the aim points [m], as if the body were a ball of the radius there; NaN of landers
+        on the partner."""
         ways = ways_from_aims(self.body, self.begin.site, self.position)
         return np.where(self.ground == 0, ways, np.nan)
 

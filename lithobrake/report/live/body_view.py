@@ -55,7 +55,7 @@ def _end_view(data: PageData, journeys: PageJourneys) -> list[LiveSection]:
     """A pin at the place of each lander on the ground, and the flights of the first journeys."""
     table, (ways, ended) = journeys.table, data.paths
     place = np.column_stack([table[f"position_{axis}"] for axis in "xyz"])
-    on_ground = np.isfinite(place).all(axis=1) & journeys.is_on_body
+    on_ground = np.isfinite(place).all(axis=1) & ~journeys.is_on_partner
     if not (on_ground.any() or len(ways)):
         return []
     arrays, facts = _body(data, np.broadcast_to(np.array(BARE), (len(data.body_faces), 3)))

@@ -167,7 +167,7 @@ def end_map(data: PageData, journeys: PageJourneys) -> PlaceMap:
         Regions("those at rest", AT_REST, journeys.rest.regions),
         Regions("the first impacts", FATE_COLOURS[FlightStatus.IMPACT], () if delivery is None else delivery.regions),
     ]
-    names, table = end_words(data.results.site), journeys.on_body
+    names, table = end_words(data.results.site), journeys.elsewhere
     places = places_by_end(names, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
     soils = {name: one.outlines for name, one in data.results.soils.items()}
     return PlaceMap(places, regions, *aim_point(data), soils)
