@@ -179,6 +179,14 @@ def outcomes(results: "Results", *, has_map: bool) -> str:
     )
 
 
+def partner_map(results: "Results") -> str:
+    """The map of the other body of a binary."""
+    return (
+        f"Landers on the ground of {partner_words(results.site)}, by latitude and longitude on it, in equal areas on a "
+        "sphere of the mean radius of these places. Longitude 0 faces the body of the site at time 0 of the flights."
+    )
+
+
 def times(rest: "JourneyRest") -> str:
     """The figure of times and distances."""
     said = times_and_distances(rest)

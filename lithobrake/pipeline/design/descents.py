@@ -21,6 +21,7 @@ from lithobrake.study.lander_checks import lander_radius
 from lithobrake.study.state_paths import DeliveredStates
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
+from lithobrake.vocabulary.known_bodies import printed_name
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, Row
@@ -352,7 +353,7 @@ def descents_in_words(descents: Descents) -> str:
             f"{span_of((speed.min(), speed.max()))} cm/s"
         )
     there = int(descents.ground.sum())
-    said += f", {there} of them on {descents.site.ground_names[1]}" if there else ""
+    said += f", {there} of them on {printed_name(descents.site.ground_names[1])}" if there else ""
     ends = [f"{number} {WORDS.get(FlightStatus(one), 'still fly')}" for one, number in others.items()]
     return "; ".join([said, *ends]) + "." + (_places(descents) if (down & (descents.ground == 0)).any() else "")
 

@@ -18,6 +18,7 @@ from lithobrake.report.figures.place_map import (
     outcomes_figure,
     places_by_end,
     rest_figure,
+    whole_figure,
 )
 from lithobrake.report.figures.run_figures import variance_figure
 from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
@@ -39,7 +40,7 @@ from lithobrake.results.page_data import PageData, PageJourneys
 from lithobrake.statements import captions, grounds
 from lithobrake.statements import journeys as words
 from lithobrake.statements.answers import page_answer, page_details, page_tiles, page_warnings
-from lithobrake.statements.labels import GROUND_WORDS, end_words
+from lithobrake.statements.labels import GROUND_WORDS, end_words, partner_words
 from lithobrake.statements.limits import options_caption, rare_caption
 from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
@@ -103,6 +104,11 @@ def _to_rest(data: PageData, journeys: PageJourneys) -> list[PageSection]:
         ),
         Plot("attitude", "Side down and tilt", words.attitude(rest), lambda: _draw_attitude(journeys)),
     ]
+    if journeys.is_on_partner.any():
+        there = partner_words(results.site)
+        where.append(
+            Plot("partner_map", f"On {there}", words.partner_map(results), lambda: _draw_partner(data, journeys))
+        )
     spreads = [time_spread(journeys), distance_spread(journeys)]
     when = [
         Plot("times", "Time to rest and distance", words.times(rest), lambda: spreads_figure(spreads)),
@@ -171,6 +177,14 @@ def end_map(data: PageData, journeys: PageJourneys) -> PlaceMap:
     places = places_by_end(names, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
     soils = {name: one.outlines for name, one in data.results.soils.items()}
     return PlaceMap(places, regions, *aim_point(data), soils)
+
+
+def _draw_partner(data: PageData, journeys: PageJourneys) -> "Figure":
+    """Where landers end on the other body of a binary."""
+    names, table = end_words(data.results.site), journeys.table.where(journeys.is_on_partner)
+    places = places_by_end(names, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
+    radius = float(np.linalg.norm([table[f"position_{axis}"] for axis in "xyz"], axis=0).mean())
+    return whole_figure(PlaceMap(places, [], (0.0, 0.0), radius, has_aim=False))
 
 
 def end_shares(data: PageData) -> list[ShareBar]:
