@@ -70,9 +70,7 @@ def fly(
     """
     starts = _starts(position, velocity)
     begin = _one_each("start_time", start_time, len(starts), most=LATEST)
-    times = _one_each("duration", duration, len(starts))
-    if not (times > 0.0).all():
-        raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
+    times = _durations(duration, len(starts))
     tolerance = _checked_choices(frame, gravity, tolerance)
     count = len(starts)
     masses = _one_each("mass", body.mass if mass is None else mass, count, "kg")
@@ -82,17 +80,15 @@ def fly(
     fixed, starts = _in_both_frames(body, starts, frame, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, fixed, starts, dynamics.orbit, begin)
     ends, turning = FlightEnds.of_count(count), turning_of(body.rotation)
-    # A flight that begins on the partner is near it for long, and reads its gravity from the finer table.
-    near = (phase[:, 1] == ON_SURFACE) & (gravity == "table")
-    sources = {one: _sources(body, gravity, near_partner=one) for one in np.unique(near).tolist()}
+    sources, pieces = _pieces(body, gravity, phase)
 
     def part(which: Integers) -> None:
-        forces = Forces(*sources[bool(near[which[0]])], dynamics.of_flights(which), turning)
+        forces = Forces(*sources[phase[which[0], 1]], dynamics.of_flights(which), turning)
         out = FlightEnds.of_count(len(which))
         integrate_flights(starts[which], begin[which], times[which], phase[which], forces, grounds, out)
         ends.put(which, out)
 
-    _run(part, _pieces(near), threads, progress)
+    _run(part, pieces, threads, progress)
     _refuse_failed(starts, ends, tolerance)
     begins = StartStates(begin, fixed[:, :3].copy(), fixed[:, 3:].copy(), masses, periods)
     place, rate = out_of_frame(body.rotation, ends.state[:, :3], ends.state[:, 3:], begin + ends.time)
@@ -110,10 +106,17 @@ def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float
     return finite_number("tolerance", tolerance, at_least=1e-13, at_most=1e-3)
 
 
-def _pieces(near: NDArray[np.bool_]) -> list[Integers]:
-    """Numbers of the flights that a thread takes at a time; those of one piece begin all near the partner, or none."""
-    alike = np.flatnonzero(~near), np.flatnonzero(near)
-    return [which[first : first + CHUNK] for which in alike for first in range(0, len(which), CHUNK)]
+def _pieces(
+    body: Body, gravity: str, phase: NDArray[np.int64]
+) -> tuple[dict[int, tuple[Gravity, Gravity]], list[Integers]]:
+    """What flights read of gravity, by their phase at the partner, and numbers of those that a thread takes at a time.
+
+    A flight that begins on the partner is near it for long, and reads its gravity from the finer table. All flights of
+    one piece begin on it, or none.
+    """
+    by_phase = {one: np.flatnonzero(phase[:, 1] == one) for one in np.unique(phase[:, 1]).tolist()}
+    pieces = [which[first : first + CHUNK] for which in by_phase.values() for first in range(0, len(which), CHUNK)]
+    return {one: _sources(body, gravity, near_partner=one == ON_SURFACE) for one in by_phase}, pieces
 
 
 def _sources(body: Body, gravity: str, *, near_partner: bool) -> tuple[Gravity, Gravity]:
@@ -184,6 +187,14 @@ def _one_each(
         raise ValueError(f"{name} is {given!r} {unit}; it must be from {-most:g} to {most:g} {unit}.")
     # A copy, since kernels would be compiled anew for an array of other strides that cannot be written.
     return np.array(np.broadcast_to(values, count))
+
+
+def _durations(duration: ArrayLike, count: int) -> NDArray[np.float64]:
+    """A duration [s] of each flight. Raises ValueError for one that is not above 0."""
+    times = _one_each("duration", duration, count)
+    if not (times > 0.0).all():
+        raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
+    return times
 
 
 def _in_both_frames(

@@ -136,8 +136,9 @@ def test_what_is_no_landing_has_no_contact_sheet(motion: MovingBodies, tmp_path:
 
 
 PHONE, LAPTOP = 390, 1280
-ROW: dict[str, Any] = {"journey": 7, "end": "at_rest", "time_s": 5000.0, "latitude_deg": 12.0, "longitude_deg": -178.0,
-    "distance": 9.0, "contacts": 4, "face": "-z", "tilt_deg": 12.34, "reason": ""}  # fmt: skip
+ROW: dict[str, Any] = {"journey": 7, "end": "at_rest", "body": "dimorphos", "time_s": 5000.0,
+    "latitude_deg": 12.0, "longitude_deg": -178.0, "distance": 9.0, "contacts": 4,
+    "face": "-z", "tilt_deg": 12.34, "reason": ""}  # fmt: skip
 
 
 def track(**changes: Any) -> JourneyTrack:
