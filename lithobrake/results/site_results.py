@@ -86,8 +86,6 @@ class SiteResults:
     """name of the other body of a binary, or null"""
     partner_distance_m: float | None
     """between the two centres [m], or null"""
-    lands_on_partner: bool
-    """whether landers are followed on the partner; false: there is none, or it is a planet, where a journey ends"""
     latitude_deg: float
     """planetocentric latitude of the aim point"""
     longitude_deg: float

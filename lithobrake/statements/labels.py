@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.known_bodies import printed_name
+from lithobrake.vocabulary.known_bodies import PLANETS, printed_name
 from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.number_words import at_level, interval_digits, number, percent, span
 from lithobrake.vocabulary.outcomes import (
@@ -167,9 +167,9 @@ def partner_words(site: "SiteResults") -> str:
 
 
 def end_words(site: "SiteResults") -> dict[str, str]:
-    """As END_WORDS, with the partner by its name, as "at rest on Didymos"."""
+    """As END_WORDS, with the partner by its name, as "at rest on Didymos", or "on Mars", where nothing is followed."""
     there = partner_words(site)
-    return END_WORDS | {JourneyEnd.PARTNER: f"at rest on {there}" if site.lands_on_partner else f"on {there}"}
+    return END_WORDS | {JourneyEnd.PARTNER: f"on {there}" if site.partner in PLANETS else f"at rest on {there}"}
 
 
 def output_words(name: str) -> str:

@@ -99,5 +99,6 @@ def body_named_in(*words: str) -> KnownBody | None:
     return next((body for body in found if body is not None), None)
 
 
+PLANETS = ("Mercury", "Venus", "Earth", "Mars", "Jupiter", "Saturn", "Uranus", "Neptune")
 # Those whose shape comes with the package.
 BUILT_IN_BODIES = {key: body for key, body in KNOWN_BODIES.items() if body.is_built_in}

@@ -56,7 +56,6 @@ def site_results(site: Site) -> SiteResults:
         centroid_m=centroid,
         partner=partner,
         partner_distance_m=None if partner is None else float(body.orbit.distance),
-        lands_on_partner=len(site.ground_names) > 1,
         latitude_deg=medians["latitude_deg"],
         longitude_deg=medians["longitude_deg"],
         heading_deg=medians["heading_deg"] if heads else None,
