@@ -50,7 +50,8 @@ def fly(
     start_time           when each flight begins [s], one or one a flight: how far the body has then turned against the
                          inertial axes, and where its partner is
     gravity              "exact": the polyhedron's; "table": read from grids that are built once for a shape and kept
-                         on disk, with the error shape.table_error
+                         on disk, with the error shape.table_error; those of the partner are coarser, except for a
+                         flight that begins on it
     mass, spin_period    [kg], [s], of the body in each flight, in place of its own: for a body that is not well known
     tolerance            error that one step may make: this part of the body's radius in position, and the same part
                          of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with

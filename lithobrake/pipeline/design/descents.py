@@ -165,6 +165,11 @@ class Descents:
         return found
 
     @property
+    def reach(self) -> float:
+        """The fraction of the landers that reach the ground of the body of the site."""
+        return float((self.touches_down & (self.ground == 0)).mean())
+
+    @property
     def position(self) -> np.ndarray:
         """Where flights end [m], [count, 3], fixed to the body that each reaches."""
         return np.where(self.touches_down[:, None], self.flights.on_ground[0], self.flights.position)
