@@ -18,6 +18,7 @@ from lithobrake.results import StudyResults, Table
 from lithobrake.results.motions import landing_study
 from lithobrake.smallbody import tumble
 from lithobrake.smallbody.bounce import impact_frame
+from lithobrake.smallbody.grounds import BodyGround, Moments, grounds_of
 from lithobrake.smallbody.tumbling import turned_freely
 from lithobrake.study import Study
 from lithobrake.touchdown.lander_model import lander
@@ -116,20 +117,35 @@ def turns_of(results: StudyResults, flown: Flown, sample: int) -> list[Turn]:
 def _flight(study: Study, flown: Flown, flight: int, row: Row, *, is_first: bool) -> Turn:
     """The flight after the touchdown of this row, or the one that ends with it, which is then the first."""
     place, incoming = (np.array([row[f"{of}_{axis}"] for axis in "xyz"]) for of in ("position", "velocity"))
-    shape, rate = flown.body.shape, 2.0 * math.pi / float(flown.spin_period[flight])
-    time, turning = float(flown.end_time[flight]), np.array([0.0, 0.0, rate])
+    rate, time = 2.0 * math.pi / float(flown.spin_period[flight]), float(flown.end_time[flight])
+    ground = _ground(flown, row)
+    shape, one = ground.body.shape, np.array([flight])
     normal = shape.normals[shape.nearest(place)[1]]
-    inertia = _inertia(study, row)
+    inertia, begin = _inertia(study, row), Moments(flown.start_time, flown.mass, flown.spin_period).at(one)
     if is_first:
         down, spin = arriving(row, impact_frame(incoming[None], normal[None])[0])
+        down, spin = _in_flight(ground, begin._replace(time=begin.time + time), down, spin)
         # Back in time from the touchdown.
-        attitude, spin = turned_freely(inertia, down, spin + turning, float(flown.spin_period[flight]), -time)
+        attitude, spin = turned_freely(inertia, down, spin, float(flown.spin_period[flight]), -time)
     else:
         local = np.array([row[name] for name in VELOCITY_OUT])
-        frame = from_frame(_axes(normal, incoming, flown.velocity[flight], local))
-        attitude, spin = frame * attitude_of(row), frame.apply(spin_of(row)) + turning
+        _, outgoing = ground.states_on_ground(flown.position[one], flown.velocity[one], begin)
+        frame = from_frame(_axes(normal, incoming, outgoing[0], local))
+        attitude, spin = _in_flight(ground, begin, frame * attitude_of(row), frame.apply(spin_of(row)))
     what = "the flight to the first touchdown" if is_first else f"the flight after touchdown {row['touchdown']:.0f}"
     return Turn(float(flown.begin[flight]), time, attitude, spin, inertia, rate, what)
+
+
+def _ground(flown: Flown, row: Row) -> BodyGround:
+    """The ground of the touchdown of this row."""
+    partner, grounds = flown.body.partner, grounds_of(flown.body)
+    return grounds[-1] if partner is not None and row["body"] == partner.body.name else grounds[0]
+
+
+def _in_flight(ground: BodyGround, when: Moments, attitude: Rotation, spin: Array) -> tuple[Rotation, Array]:
+    """Attitude, and spin against the stars [rad/s], along the axes of flights, from those against a ground."""
+    whole, turns = spin + ground.spin(when)[0], ground.turns(when)
+    return (attitude, whole) if turns is None else (Rotation.from_matrix(turns[0].T) * attitude, whole @ turns[0])
 
 
 def _rest(results: StudyResults, flown: Flown, flights: list[int], sample: int) -> Iterator[Turn]:

@@ -17,6 +17,7 @@ from lithobrake.export.oem import RESOLUTION, Frame, Segment, epoch_texts
 from lithobrake.files.atomic import write_json
 from lithobrake.results import StudyResults
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.known_bodies import printed_name
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT
 
@@ -90,7 +91,7 @@ def _lander(
         last = end
     packet = {
         "id": f"SAMPLE_{sample}",
-        "name": f"lander {sample}: {fate.label}",
+        "name": f"lander {sample}: {_fate_words(results, fate)}",
         "availability": _interval(axes, float(segments[0].time[0]), last),
         "position": sorted(ways, key=lambda way: str(way["interval"])),
         "point": {"pixelSize": 6, "color": colour},
@@ -106,6 +107,11 @@ def _fate(results: StudyResults, sample: int) -> JourneyEnd | FlightStatus:
         return JourneyEnd(results.journeys["end"][sample])
     row = int(np.flatnonzero(results.flights["sample"] == sample)[0])
     return FlightStatus(results.flights["status"][row])
+
+
+def _fate_words(results: StudyResults, fate: JourneyEnd | FlightStatus) -> str:
+    partner = results.results.site.partner
+    return f"at rest on {printed_name(str(partner))}" if fate is JourneyEnd.PARTNER and partner else fate.label
 
 
 def _rest_time(results: StudyResults, flights: Flown, sample: int) -> float:

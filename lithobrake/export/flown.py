@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 
 from lithobrake import smallbody
 from lithobrake.results import StudyResults, Table
-from lithobrake.smallbody import Body, Partner, Shape, fly
+from lithobrake.smallbody import Body, Flights, Partner, Shape, fly
 from lithobrake.smallbody.built_in_bodies import ball_partner
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.plain_text import program_name
 
 # Arrays of Flown with an entry or row a flight.
@@ -158,15 +159,20 @@ class Flown:
     def at(self, time: float) -> "Flown":
         """Those that still fly at a later time after the start [s], flown on to it."""
         aloft = self._rows(np.flatnonzero(self.end_time > time))
-        return replace(aloft._flown(time - self.time), time=time) if len(aloft.sample) else aloft
+        if not len(aloft.sample):
+            return aloft
+        flights = aloft._flights(time - self.time)
+        # In pieces a flight may meet the partner, whose ground moves, a little before its end.
+        on = np.flatnonzero(flights.status != FlightStatus.PARTNER)
+        return replace(aloft._ended(flights), time=time)._rows(on)
 
     def ends(self) -> tuple[Array, Array]:
         """Position [m] and velocity [m/s], body-fixed, [count, 3], at the end of flights that begin here.
 
         They go as the study flew them, in one piece, and so end where it says to the last bit.
         """
-        flown = self._flown(self.duration - self.time)
-        return flown.position, flown.velocity
+        flights = self._flights(self.duration - self.time)
+        return flights.position, flights.velocity
 
     def inertial(self, time: Array | float, position: Array, velocity: Array) -> tuple[Array, Array]:
         """Body-fixed states at times since the start [s] in axes that do not turn, the body's at the touchdown."""
@@ -179,15 +185,18 @@ class Flown:
             turned.append(np.column_stack([c * x - s * y, s * x + c * y, z]))
         return turned[0], turned[1]
 
-    def _flown(self, duration: Array | float) -> "Flown":
+    def _flights(self, duration: Array | float) -> Flights:
         """Flights that go on for so long [s], or to their end."""
-        flights = fly(
+        return fly(
             *(self.body, self.position, self.velocity, duration),
             gravity=self.gravity,
             start_time=self.start_time + self.time,
             mass=self.mass,
             spin_period=self.spin_period,
         )
+
+    def _ended(self, flights: Flights) -> "Flown":
+        """The same at the ends of these flights."""
         return replace(self, position=flights.position, velocity=flights.velocity)
 
     def _rows(self, rows: NDArray[np.int64]) -> "Flown":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import ExportOptions, body_name, has_journeys
+from lithobrake.export.flown import ExportOptions, body_name, has_journeys, study_body
 from lithobrake.files.atomic import atomic_path, write_json
 from lithobrake.geometry.mesh import volume_of
 from lithobrake.results import StudyResults, Table
@@ -54,8 +54,15 @@ class MapFrame:
 
     @classmethod
     def of(cls, results: StudyResults) -> "MapFrame":
-        volume = volume_of(*results.body_shape)
-        return cls(body_name(results), (0.75 * volume / math.pi) ** (1.0 / 3.0))
+        return cls(body_name(results), _ball_radius(volume_of(*results.body_shape)))
+
+    @classmethod
+    def of_partner(cls, results: StudyResults) -> "MapFrame":
+        """That of the other body of a binary."""
+        site = results.results.site
+        partner = study_body(results, site.mass_kg, site.spin_period_s).partner
+        assert partner is not None
+        return cls(program_name(partner.body.name), _ball_radius(partner.body.shape.volume))
 
     @property
     def name(self) -> str:
@@ -68,6 +75,11 @@ class MapFrame:
             f'GEOGCS["{self.name}",DATUM["{self.body}",SPHEROID["{self.body} sphere",{self.radius!r},0]],'
             f'PRIMEM["Longitude 0 of {self.body}_FIXED",0],UNIT["degree",0.017453292519943295]]'
         )
+
+
+def _ball_radius(volume: float) -> float:
+    """Radius [m] of a ball of a volume [m3]."""
+    return (0.75 * volume / math.pi) ** (1.0 / 3.0)
 
 
 def map_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
@@ -154,28 +166,46 @@ def _tags(frame: MapFrame, resolution_deg: float, band: str, quantity: str) -> "
 
 def point_names(results: StudyResults, chosen: ExportOptions) -> list[str]:
     has_rest = has_journeys(results) or (results.folder / REST_FILE).is_file()
-    return ["impacts.geojson", *(["rest.geojson"] if has_rest else [])]
+    partner = results.results.site.partner
+    there = [f"impacts_{partner}.geojson", f"rest_{partner}.geojson"] if _is_on_partner(results).any() else []
+    return ["impacts.geojson", *(["rest.geojson"] if has_rest else []), *there]
+
+
+def _is_on_partner(results: StudyResults) -> np.ndarray:
+    """Which touchdowns of journeys are on the other body of a binary, [touchdown_count]; none of other studies."""
+    partner = results.results.site.partner
+    if partner is None or not has_journeys(results):
+        return np.zeros(0, dtype=bool)
+    there: np.ndarray = results.touchdowns["body"] == partner
+    return there
 
 
 def write_geojson(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
     """Write a point for each flight that ends on the body, or each touchdown of journeys, and one for each place of
-    rest, with their numbers."""
+    rest, with their numbers; those on the partner of the body to files of their own."""
     ends, ends_on_ground = _ends_on_ground(results)
+    frame = MapFrame.of(results)
     if has_journeys(results):
-        _write_points(results, paths[0], "touchdowns", results.touchdowns, TOUCHDOWN_PROPERTIES)
-        _write_points(results, paths[1], "places of rest", ends.where(ends_on_ground), JOURNEY_PROPERTIES)
+        touchdowns = results.touchdowns
+        there = _is_on_partner(results) if len(paths) > 2 else np.zeros(touchdowns.row_count, dtype=bool)
+        _write_points(frame, paths[0], "touchdowns", touchdowns.where(~there), TOUCHDOWN_PROPERTIES)
+        _write_points(frame, paths[1], "places of rest", ends.where(ends_on_ground), JOURNEY_PROPERTIES)
+        if len(paths) > 2:
+            rests, partner = ends.where(ends["end"] == JourneyEnd.PARTNER), MapFrame.of_partner(results)
+            own = tuple(name for name in JOURNEY_PROPERTIES if name != "distance")
+            _write_points(partner, paths[2], "touchdowns", touchdowns.where(there), TOUCHDOWN_PROPERTIES)
+            _write_points(partner, paths[3], "places of rest", rests, own)
         return
-    _write_points(results, paths[0], "impacts", ends.where(ends_on_ground), PROPERTIES)
+    _write_points(frame, paths[0], "impacts", ends.where(ends_on_ground), PROPERTIES)
     for path in paths[1:]:
         at_rest = results.rest.where(results.rest["end"] == JourneyEnd.AT_REST)
         # A table without rows lacks some of its columns.
         known = [name for name in REST_PROPERTIES if name in at_rest.columns]
-        _write_points(results, path, "places of rest", at_rest, known)
+        _write_points(frame, path, "places of rest", at_rest, known)
 
 
-def _write_points(results: StudyResults, path: Path, what: str, table: Table, names: Sequence[str]) -> None:
-    """Write the places of a table, one point a row with its numbers of these names, in the frame of the body."""
-    frame = MapFrame.of(results)
+def _write_points(frame: MapFrame, path: Path, what: str, table: Table, names: Sequence[str]) -> None:
+    """Write the places of a table, one point a row with its numbers of these names, in the frame of their body."""
     features = [
         {
             "type": "Feature",

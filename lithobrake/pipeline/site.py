@@ -73,6 +73,12 @@ class Site:
         """Latitude and longitude of the aim point [deg]."""
         return self.medians["latitude_deg"], self.medians["longitude_deg"]
 
+    @property
+    def ground_names(self) -> tuple[str, ...]:
+        """Names of the bodies on whose ground landers are followed, that of the site first."""
+        own, partner = self.study.site.name or Path(self.study.site.body).stem, self.body.partner
+        return (own,) if partner is None or partner.is_planet else (own, partner.body.name)
+
     @cached_property
     def aim_radius(self) -> float:
         """Radius of the body at the aim point [m]."""

@@ -218,11 +218,12 @@ def _spread(values: np.ndarray) -> SiteSpread:
 
 
 def first_places(job: Job) -> tuple[np.ndarray, np.ndarray]:
-    """Latitude and longitude [deg] of the first touchdown of each journey, [journey_count], NaN where it has none."""
-    rows = read_rows(job.folder / TOUCHDOWNS_FILE, ("journey", "touchdown", "latitude_deg", "longitude_deg"), AGAIN)
+    """Latitude and longitude [deg] of the first touchdown of each journey, [journey_count]; NaN: none on the body."""
+    columns = ("journey", "touchdown", "body", "latitude_deg", "longitude_deg")
+    rows = read_rows(job.folder / TOUCHDOWNS_FILE, columns, AGAIN)
     found = np.full((2, len(JourneyTable.load(job.folder).end)), np.nan)
     for row in rows:
-        if row["touchdown"] == "0":
+        if row["touchdown"] == "0" and row["body"] == job.site.ground_names[0]:
             found[:, int(row["journey"])] = float(row["latitude_deg"]), float(row["longitude_deg"])
     return found[0], found[1]
 

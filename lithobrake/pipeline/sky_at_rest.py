@@ -193,25 +193,27 @@ def sky_dependencies(study: Study) -> Any:
 
 
 def look_up(job: Job) -> None:
-    sky, landers, body = job.study.sky, _at_rest(job), job.site.body
-    rows = [
-        row
-        for name in sky.bodies
-        for row in rows_of(
-            *(body, landers, name, where_it_stands(job.study, job.site, name)), sky.mask_of(name), sky.beam_of(name)
-        )
-    ]
+    sky, body = job.study.sky, job.site.body
+    grounds = [(body, _at_rest(job, JourneyEnd.AT_REST))]
+    if len(job.site.ground_names) > 1:
+        grounds.append((body.seen_from_partner, _at_rest(job, JourneyEnd.PARTNER)))
+    rows = []
+    for name in sky.bodies:
+        stands = where_it_stands(job.study, job.site, name)
+        # Where an orbiter of the first body stands over the partner depends on when.
+        for ground, landers in grounds[:1] if name == "orbiter" else grounds:
+            rows += rows_of(*(ground, landers, name, stands), sky.mask_of(name), sky.beam_of(name))
     write_table(job.folder, SKY_FILE, tuple(SKY), rows, SKY)
 
 
-def _at_rest(job: Job) -> list[dict[str, float]]:
-    """Number, place and attitude of each lander at rest; NaN where it has no attitude."""
+def _at_rest(job: Job, end: JourneyEnd) -> list[dict[str, float]]:
+    """Number, place and attitude of each lander at rest that ended so; NaN where it has no attitude."""
     names = ("journey", *(f"position_{axis}" for axis in "xyz"), *(f"attitude_{part}" for part in "wxyz"))
     rows = read_rows(job.folder / JOURNEYS_FILE, ("journey", "end", "attitude_w"), AGAIN)
     found = []
     for row in rows:
         values = {title.split(" ")[0]: value for title, value in row.items()}
-        if values["end"] == JourneyEnd.AT_REST:
+        if values["end"] == end:
             found.append({name: float(values[name] or "nan") for name in names})
     return found
 

@@ -14,7 +14,7 @@ from lithobrake.report.figures.style import figure_style
 from lithobrake.report.pages import first_touchdown, study_page
 from lithobrake.results.page_data import PageData, PageJourneys, page_results
 from lithobrake.statements.journeys import END_ROWS
-from lithobrake.statements.labels import END_WORDS
+from lithobrake.statements.labels import end_words
 from lithobrake.vocabulary.plain_text import in_lines
 
 if TYPE_CHECKING:
@@ -143,7 +143,7 @@ class StudyPlots:
         """Bars of a count over the journeys."""
         table = self._journeys(name).table
         with _axes(ax, (5.2, 3.6)) as axes:
-            draw_counts(axes, table[name], table["end"], END_WORDS)
+            draw_counts(axes, table[name], table["end"], end_words(self._page.results.site))
             axes.set(xlabel=label, ylabel="journeys")
             axes.legend()
         return axes

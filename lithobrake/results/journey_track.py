@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.geometry.attitude import angles, directions
 from lithobrake.vocabulary.callbacks import Progress, silent
+from lithobrake.vocabulary.known_bodies import printed_name
 from lithobrake.vocabulary.number_words import counted, duration
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import in_lines, short_repr
@@ -26,6 +27,8 @@ HEADS = (
     " down    delivery     [m/s]      [deg]      [m/s]        [s]         [m]",
 )
 _FAILED = "failed"
+# A body by its name, and latitude and longitude on it [deg].
+Place = tuple[str, float, float]
 
 
 @dataclass(frozen=True)
@@ -34,7 +37,7 @@ class TouchdownFacts:
 
     number: in its journey, from 0. begin, end: since delivery [s]. speed [m/s], incidence_deg from the
     surface normal: of the impact. outcome: how it ended. speed_out [m/s]: None unless the lander flies on.
-    latitude_deg, longitude_deg: of the impact.
+    latitude_deg, longitude_deg: of the impact; body: on whose ground it is; radius: of that body there [m].
     """
 
     number: int
@@ -46,6 +49,8 @@ class TouchdownFacts:
     speed_out: float | None
     latitude_deg: float
     longitude_deg: float
+    body: str
+    radius: float
 
     @classmethod
     def of(cls, row: Mapping[str, Any], descent: float) -> "TouchdownFacts":
@@ -64,6 +69,8 @@ class TouchdownFacts:
             speed_out=float(row["speed_out"]) if left else None,
             latitude_deg=float(row["latitude_deg"]),
             longitude_deg=float(row["longitude_deg"]),
+            body=str(row["body"]),
+            radius=math.hypot(*(float(row[f"position_{axis}"]) for axis in "xyz")),
         )
 
     @property
@@ -73,17 +80,19 @@ class TouchdownFacts:
         return short.get(self.outcome, self.outcome) if self.speed_out is None else f"{self.speed_out:.3g}"
 
     @property
-    def place(self) -> tuple[float, float]:
-        """Latitude and longitude of the impact [deg]."""
-        return self.latitude_deg, self.longitude_deg
+    def place(self) -> Place:
+        """Body, latitude and longitude of the impact [deg]."""
+        return self.body, self.latitude_deg, self.longitude_deg
 
-    def to_next(self, there: tuple[float, float] | None, radius: float, end: JourneyEnd | None) -> str:
+    def to_next(self, there: Place | None, radius: float, end: JourneyEnd | None) -> str:
         """How far it is over the ground to the next touchdown [m], or, where there is none, how the last flight ended.
 
-        there: latitude and longitude of the next [deg]; radius: of the body [m], as if it were a ball.
+        there: where the next is; radius: of the body [m], as if it were a ball.
         """
+        if there is not None and there[0] != self.body:
+            return f"to {printed_name(there[0])}"
         if there is not None:
-            return f"{radius * float(angles(directions(*self.place), directions(*there))):.3g}"
+            return f"{radius * float(angles(directions(*self.place[1:]), directions(*there[1:]))):.3g}"
         return end.label if end is not None and self.speed_out is not None else ""
 
     def cells(self, to_next: str) -> tuple[str, ...]:
@@ -110,7 +119,7 @@ class JourneyTrack:
 
     row: of the table `journeys`, nothing where it has nothing. aim: latitude and longitude of the aim point [deg];
     radius: of the body there [m]; vertices of the body [m], shape [vertex, 3], body-fixed. descent: time from delivery
-    to the first touchdown [s].
+    to the first touchdown [s]. partner: name of the other body of a binary.
     """
 
     row: Mapping[str, Any]
@@ -119,6 +128,7 @@ class JourneyTrack:
     radius: float
     vertices: "NDArray[np.float64]"
     descent: float
+    partner: str | None
     __repr__ = short_repr
 
     @property
@@ -132,15 +142,28 @@ class JourneyTrack:
         return JourneyEnd(self.row["end"])
 
     @property
-    def end_place(self) -> tuple[float, float] | None:
-        """Latitude and longitude of the end [deg]; None where the lander is not on the ground of the body."""
-        place = self.row["latitude_deg"], self.row["longitude_deg"]
-        return place if _is_there(place[0]) else None
+    def end_place(self) -> Place | None:
+        """Where the end is; None where the lander is not on the ground."""
+        latitude, longitude = self.row["latitude_deg"], self.row["longitude_deg"]
+        return (str(self.row["body"]), latitude, longitude) if _is_there(latitude) else None
+
+    @property
+    def places_on_body(self) -> list[tuple[float, float]]:
+        """Latitude and longitude [deg] of each touchdown on the body of the aim point, NaN of one on the partner."""
+        places = [one.place for one in self.touchdowns]
+        return [(math.nan, math.nan) if place[0] == self.partner else place[1:] for place in places]
+
+    @property
+    def end_label(self) -> str:
+        """How it ended, in a few words, with the body on which it rests where that is the partner."""
+        on_partner = self.end is JourneyEnd.PARTNER and self.row["body"]
+        return f"at rest on {printed_name(self.row['body'])}" if on_partner else self.end.label
 
     def to_next(self, number: int) -> str:
         """How far it is from a touchdown to the next, or what became of the last flight."""
         there = self.touchdowns[number + 1].place if number + 1 < len(self.touchdowns) else None
-        return self.touchdowns[number].to_next(there, self.radius, self.end)
+        here = self.touchdowns[number]
+        return here.to_next(there, here.radius if here.body == self.partner else self.radius, self.end)
 
     def lines(self) -> list[str]:
         """A line for each touchdown, under two lines of heads, and the end."""
@@ -151,12 +174,16 @@ class JourneyTrack:
     def end_words(self) -> str:
         """How, when and where it ended, after how many contacts, and how the lander lies, in a sentence."""
         contacts, touchdowns = int(self.row["contacts"]), len(self.touchdowns)
-        said = f"{self.end.label.capitalize()} {duration(self.descent + self.row['time_s'])} after delivery, after "
+        label = self.end_label
+        said = f"{label[:1].upper()}{label[1:]} {duration(self.descent + self.row['time_s'])} after delivery, after "
         said += f"{counted(contacts, 'contact')} in {counted(touchdowns, 'touchdown')}"
         if self.end_place is not None:
-            latitude, longitude = self.end_place
+            body, latitude, longitude = self.end_place
             said += f", at latitude {latitude:.3f} and longitude {longitude:.3f} deg"
-            said += f", {self.row['distance']:.3g} m from the aim point"
+            if body == self.partner:
+                said += "" if self.end is JourneyEnd.PARTNER else f" on {printed_name(body)}"
+            else:
+                said += f", {self.row['distance']:.3g} m from the aim point"
         if self.row["face"]:
             said += f"; side {self.row['face']} is down, tilted by {self.row['tilt_deg']:.1f} deg"
         return f"{said}: {self.row['reason']}." if self.row["reason"] else f"{said}."
@@ -231,7 +258,7 @@ def track_of(
     descent = descent_time(arcs["begin_s"].tolist())
     facts = tuple(TouchdownFacts.of(one, descent) for one in rows)
     return JourneyTrack(
-        row, facts, (site.latitude_deg, site.longitude_deg), math.hypot(*site.place_m), vertices, descent
+        row, facts, (site.latitude_deg, site.longitude_deg), math.hypot(*site.place_m), vertices, descent, site.partner
     )
 
 

@@ -30,13 +30,25 @@ class PageJourneys:
     """The drawn landers.
 
     table: a row each; touchdowns: a row each; rest: numbers of those at rest; explorer: what the page evaluates of the
-    emulator of all touchdowns, None where there is none.
+    emulator of all touchdowns, None where there is none; partner: name of the other body of a binary.
     """
 
     table: Table
     touchdowns: Table
     rest: JourneyRest
     explorer: ExplorerTables | None
+    partner: str | None
+
+    @property
+    def is_on_partner(self) -> "NDArray[np.bool_]":
+        """Which landers ended on the ground of the partner, in whose frame their places are, shape [lander]."""
+        body: NDArray[np.str_] = self.table["body"]
+        return np.zeros(len(body), dtype=bool) if self.partner is None else body == self.partner
+
+    @property
+    def elsewhere(self) -> Table:
+        """The landers that did not end on the partner: their places are on the body of the site."""
+        return self.table.where(~self.is_on_partner)
 
 
 @dataclass(frozen=True)
@@ -182,7 +194,8 @@ def _journeys(found: StudyResults) -> PageJourneys | None:
     if rest is None:
         return None
     has_explorer = (found.folder / file_names.TOUCHDOWN_EXPLORER_FILE).is_file()
-    return PageJourneys(found.journeys, found.touchdowns, rest, found.touchdown_explorer if has_explorer else None)
+    explorer = found.touchdown_explorer if has_explorer else None
+    return PageJourneys(found.journeys, found.touchdowns, rest, explorer, found.results.site.partner)
 
 
 def _samples(found: StudyResults) -> PageSamples | None:

@@ -144,7 +144,7 @@ class SiteEnds:
     at_rest: Share
     """landers at rest within the longest journey"""
     partner: Share
-    """landers that come down on the partner"""
+    """landers at rest on the partner"""
     escaped: Share
     """landers that escape"""
     under_way: Share

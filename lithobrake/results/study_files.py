@@ -27,7 +27,7 @@ NEEDED = tuple(name for name in JOURNEY if not name.startswith("attitude_"))
 _TWICE = ("input:journey", "input:touchdown", "key", "outcome")
 SUMMARY_FORMAT = 5
 # Columns that hold no numbers.
-_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "face", "soil"}
+_WORDS = {"key", "design", "outcome", "reason", "status", "ground", "end", "body", "face", "soil"}
 # Files of what samples of an emulator or an expansion came to, which a study without samples has none of.
 OF_SAMPLES = (
     file_names.SAMPLES_FILE,

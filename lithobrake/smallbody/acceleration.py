@@ -56,6 +56,22 @@ class Orbit(NamedTuple, Generic[Entry]):
             array[..., 0], array[..., 1] = c * x + s * y, c * y - s * x
         return p, v
 
+    def seen_from_body(
+        self: "Orbit[Any]", position: ArrayLike, velocity: ArrayLike, time: ArrayLike
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The reverse of `seen_from_partner`."""
+        p, v, t = (np.array(given, dtype=np.float64) for given in (position, velocity, time))
+        turn, angle = self.attitude + self.swing * t, self.angle + self.rate * t
+        c, s = np.cos(turn), np.sin(turn)
+        for array in (p, v):
+            x, y = array[..., 0].copy(), array[..., 1].copy()
+            array[..., 0], array[..., 1] = c * x - s * y, s * x + c * y
+        x, y = self.distance * np.cos(angle), self.distance * np.sin(angle)
+        v[..., 0] -= self.rate * y + self.swing * p[..., 1]
+        v[..., 1] += self.rate * x + self.swing * p[..., 0]
+        p[..., 0], p[..., 1] = p[..., 0] + x, p[..., 1] + y
+        return p, v
+
 
 class Motion(NamedTuple):
     """How a ground moves over a step in the turning frame of the body: the partner's, or its own."""
@@ -119,9 +135,9 @@ class Dynamics(NamedTuple):
     length_tolerance: Floats  # what a step may be wrong by in position [m]
     speed_tolerance: Floats  # the same in velocity [m/s]
 
-    def of_flights(self, piece: slice) -> "Dynamics":
-        orbit = Orbit(*(array[piece] for array in self.orbit))
-        return Dynamics(orbit, *(array[piece] for array in self[1:]))
+    def of_flights(self, which: Integers) -> "Dynamics":
+        orbit = Orbit(*(array[which] for array in self.orbit))
+        return Dynamics(orbit, *(array[which] for array in self[1:]))
 
 
 class Forces(NamedTuple):

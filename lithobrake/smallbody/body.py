@@ -1,7 +1,7 @@
 """A small body: a shape with a mass that turns, alone or with a partner."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +16,9 @@ from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 # Each takes the error of an orbit's distance down by the part that flattening has in the attraction, a few percent.
 ORBIT_ITERATIONS = 10
+# Escape speed [m/s] above which a partner is a planet, on which landers are not followed: that of small bodies in pairs
+# is below it, and what arrives faster does not bounce but breaks.
+FASTEST_LANDING = 300.0
 
 
 @dataclass(frozen=True)
@@ -221,6 +224,17 @@ class Body:
         origin, axes = self.local_frame(latitude, longitude, heading)
         return origin[index.reshape(-1)], axes[index.reshape(-1)]
 
+    @property
+    def seen_from_partner(self) -> "Body":
+        """The other body of the binary with this one as its partner, at the numbers of both, from a time 0 on.
+
+        Its axes turn uniformly, and so do those of this body there. Raises ValueError for a body that is alone.
+        """
+        if self.partner is None:
+            raise ValueError(f"{self.name} has no partner; allowed: a body of a binary.")
+        there, alone = self.partner, replace(self, partner=None, rotation=None)
+        return replace(there.body, partner=Partner(alone, there.period, there.facing_deg, there.longitude_deg))
+
     def partner_time(self, longitude_deg: ArrayLike, spin_period: ArrayLike) -> NDArray[np.float64]:
         """Times [s] at which the partner stands over these longitudes, for spin periods [s], all of shape [count].
 
@@ -261,6 +275,11 @@ class Partner:
             )
         if self.body.partner is not None:
             raise ValueError(f"{self.body.name}: a partner has no partner of its own; give it partner=None.")
+
+    @property
+    def is_planet(self) -> bool:
+        """Whether it is too heavy for landings: nothing arrives on it slower than FASTEST_LANDING."""
+        return 2.0 * self.body.gravitational_parameter / self.body.shape.radius > FASTEST_LANDING**2
 
     def orbit(self, parameter: Entry, spin_rate: Entry, flattening: float) -> Orbit[Entry]:
         """Its motion in the frame of a body of this G mass [m3/s2] and spin rate [rad/s]: numbers, or one a flight.

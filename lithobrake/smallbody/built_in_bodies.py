@@ -66,21 +66,32 @@ def built_in_body(name: str, *, partner: bool = True, extents: Sequence[float] |
 
 @lru_cache(maxsize=8)
 def ball_partner(
-    body: Body, name: str, mass: float, diameter: float, *, period: float | None = None, distance: float | None = None
+    body: Body,
+    name: str,
+    mass: float,
+    diameter: float,
+    *,
+    polar_diameter: float | None = None,
+    spin_period: float | None = None,
+    period: float | None = None,
+    distance: float | None = None,
 ) -> Partner:
-    """A partner of a body: a ball of a mass [kg] and a diameter [m] on a circle, which always shows it one face.
+    """A partner of a body: a ball of a mass [kg] and a diameter [m] on a circle, flattened to a polar diameter [m].
 
     The orbit is given by its period [s], or by the distance of the centres [m]; with neither, the body keeps one face
-    to its partner.
+    to its partner. Without a spin period [s] the partner always shows the body one face.
     """
-    ball = Body(_ball(diameter, name), mass, body.spin_period, name)
+    shape = _ball(diameter, name)
+    if polar_diameter is not None:
+        shape = Shape(shape.vertices * np.array([1.0, 1.0, polar_diameter / diameter]), shape.faces, name=name)
+    ball = Body(shape, mass, body.spin_period, name)
     if distance is not None:
         # The orbit of Partner, the other way round.
         flattened = 1.0 + 1.5 * (body.flattening + ball.flattening) / distance**2
         total = body.gravitational_parameter + ball.gravitational_parameter
         period = 2.0 * math.pi * math.sqrt(distance**3 / (total * flattened))
     period = body.spin_period if period is None else period
-    return Partner(replace(ball, spin_period=period), period=period, longitude_deg=0.0)
+    return Partner(replace(ball, spin_period=spin_period or period), period=period, longitude_deg=0.0)
 
 
 def _ball(diameter: float, name: str) -> Shape:

@@ -17,7 +17,7 @@ from lithobrake.smallbody.impact_search import ALOFT, ON_SURFACE, Ground
 from lithobrake.smallbody.integration import FAILED, MOST_STEPS, FlightEnds, integrate_flights
 from lithobrake.smallbody.rotation import into_frame, out_of_frame, refuse_beyond, turning_of
 from lithobrake.smallbody.shape import Shape
-from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.array_types import Floats, Integers
 from lithobrake.vocabulary.given_numbers import finite_number, numbers, whole_number
 
 CHUNK = 1024  # flights that a thread takes at a time
@@ -50,7 +50,8 @@ def fly(
     start_time           when each flight begins [s], one or one a flight: how far the body has then turned against the
                          inertial axes, and where its partner is
     gravity              "exact": the polyhedron's; "table": read from grids that are built once for a shape and kept
-                         on disk, with the error shape.table_error
+                         on disk, with the error shape.table_error; those of the partner are coarser, except for a
+                         flight that begins on it
     mass, spin_period    [kg], [s], of the body in each flight, in place of its own: for a body that is not well known
     tolerance            error that one step may make: this part of the body's radius in position, and the same part
                          of radius over dynamical time in velocity; by default 3e-7 (impacts within centimetres), with
@@ -70,9 +71,7 @@ def fly(
     """
     starts = _starts(position, velocity)
     begin = _one_each("start_time", start_time, len(starts), most=LATEST)
-    times = _one_each("duration", duration, len(starts))
-    if not (times > 0.0).all():
-        raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
+    times = _durations(duration, len(starts))
     tolerance = _checked_choices(frame, gravity, tolerance)
     count = len(starts)
     masses = _one_each("mass", body.mass if mass is None else mass, count, "kg")
@@ -81,14 +80,16 @@ def fly(
     refuse_beyond(body.rotation, body.spin_period, periods, begin, begin + times)
     fixed, starts = _in_both_frames(body, starts, frame, dynamics.spin_rate, begin)
     phase, grounds = _phases(body, fixed, starts, dynamics.orbit, begin)
-    sources, ends, turning = _sources(body, gravity), FlightEnds.of_count(count), turning_of(body.rotation)
+    ends, turning = FlightEnds.of_count(count), turning_of(body.rotation)
+    sources, pieces = _pieces(body, gravity, phase)
 
-    def part(first: int) -> None:
-        piece = slice(first, first + CHUNK)
-        forces, out = Forces(*sources, dynamics.of_flights(piece), turning), ends.of_flights(piece)
-        integrate_flights(starts[piece], begin[piece], times[piece], phase[piece], forces, grounds, out)
+    def part(which: Integers) -> None:
+        forces = Forces(*sources[phase[which[0], 1]], dynamics.of_flights(which), turning)
+        out = FlightEnds.of_count(len(which))
+        integrate_flights(starts[which], begin[which], times[which], phase[which], forces, grounds, out)
+        ends.put(which, out)
 
-    _run(part, count, threads, progress)
+    _run(part, pieces, threads, progress)
     _refuse_failed(starts, ends, tolerance)
     begins = StartStates(begin, fixed[:, :3].copy(), fixed[:, 3:].copy(), masses, periods)
     place, rate = out_of_frame(body.rotation, ends.state[:, :3], ends.state[:, 3:], begin + ends.time)
@@ -106,16 +107,31 @@ def _checked_choices(frame: str, gravity: str, tolerance: float | None) -> float
     return finite_number("tolerance", tolerance, at_least=1e-13, at_most=1e-3)
 
 
-def _sources(body: Body, gravity: str) -> tuple[Gravity, Gravity]:
+def _pieces(
+    body: Body, gravity: str, phase: NDArray[np.int64]
+) -> tuple[dict[int, tuple[Gravity, Gravity]], list[Integers]]:
+    """What flights read of gravity, by their phase at the partner, and numbers of those that a thread takes at a time.
+
+    A flight that begins on the partner is near it for long, and reads its gravity from the finer table. All flights of
+    one piece begin on it, or none.
+    """
+    by_phase = {one: np.flatnonzero(phase[:, 1] == one) for one in np.unique(phase[:, 1]).tolist()}
+    pieces = [which[first : first + CHUNK] for which in by_phase.values() for first in range(0, len(which), CHUNK)]
+    return {one: _sources(body, gravity, near_partner=one == ON_SURFACE) for one in by_phase}, pieces
+
+
+def _sources(body: Body, gravity: str, *, near_partner: bool) -> tuple[Gravity, Gravity]:
     """What attraction.attract reads of the body and of its partner; without one the body stands in, and is not asked.
 
-    Kernels take both as one type, so a partner's table may be coarser but is a table too.
+    Kernels take both as one type, so a partner's table is coarser where flights are rarely near but is a table too.
     """
     own = body.shape.gravity if gravity == "exact" else body.shape.tabled_gravity
     if body.partner is None:
         return own, own
     other = body.partner.body.shape
-    return own, other.gravity if gravity == "exact" else other.distant_gravity
+    if gravity == "exact":
+        return own, other.gravity
+    return own, other.tabled_gravity if near_partner else other.distant_gravity
 
 
 def _dynamics(body: Body, mass: NDArray[np.float64], spin_period: NDArray[np.float64], tolerance: float) -> Dynamics:
@@ -172,6 +188,14 @@ def _one_each(
         raise ValueError(f"{name} is {given!r} {unit}; it must be from {-most:g} to {most:g} {unit}.")
     # A copy, since kernels would be compiled anew for an array of other strides that cannot be written.
     return np.array(np.broadcast_to(values, count))
+
+
+def _durations(duration: ArrayLike, count: int) -> NDArray[np.float64]:
+    """A duration [s] of each flight. Raises ValueError for one that is not above 0."""
+    times = _one_each("duration", duration, count)
+    if not (times > 0.0).all():
+        raise ValueError(f"duration is {duration!r} s; it must be finite and above 0.")
+    return times
 
 
 def _in_both_frames(
@@ -277,18 +301,20 @@ def _phase(shape: Shape, position: NDArray[np.float64], slack: float, name: str)
 
 
 def _run(
-    part: Callable[[int], None], count: int, threads: int | None, progress: Callable[[float], None] | None
+    part: Callable[[Integers], None],
+    pieces: list[Integers],
+    threads: int | None,
+    progress: Callable[[float], None] | None,
 ) -> None:
     workers = os.cpu_count() or 1 if threads is None else whole_number("threads", threads, 1)
-    firsts = range(0, count, CHUNK)
-    if min(workers, len(firsts)) <= 1:
-        for number, first in enumerate(firsts, 1):
-            part(first)
+    if min(workers, len(pieces)) <= 1:
+        for number, piece in enumerate(pieces, 1):
+            part(piece)
             if progress:
-                progress(number / len(firsts))
+                progress(number / len(pieces))
         return
     with ThreadPoolExecutor(workers) as pool:
-        futures: list[Any] = [pool.submit(part, first) for first in firsts]
+        futures: list[Any] = [pool.submit(part, piece) for piece in pieces]
         try:
             for number, future in enumerate(futures, 1):
                 future.result()

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT, Body
-from lithobrake.smallbody.rotation import into_frame
+from lithobrake.smallbody.body import Body
+from lithobrake.smallbody.grounds import Moments, PartnerGround
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.plain_text import html_table
 
@@ -75,43 +75,46 @@ class Flights:
         return len(self.status)
 
     @cached_property
-    def _on_ground(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def on_ground(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position [m] and velocity [m/s] at the end in the frame of the ground: the partner's where that was hit."""
         position, velocity = self.position.copy(), self.velocity.copy()
-        hit = self.status == FlightStatus.PARTNER
-        if hit.any():
-            parameter, spin_rate = GRAVITATIONAL_CONSTANT * self.start.mass, 2.0 * np.pi / self.start.spin_period
-            orbit = self.body.orbit_with(parameter[hit], spin_rate[hit])
-            time = (self.start.time + self.time)[hit]
-            in_frame = into_frame(self.body.rotation, position[hit], velocity[hit], time)
-            position[hit], velocity[hit] = orbit.seen_from_partner(*in_frame, time)
+        hit = np.flatnonzero(self.status == FlightStatus.PARTNER)
+        if len(hit) and self.body.partner is not None:
+            when = Moments(self.start.time + self.time, self.start.mass, self.start.spin_period).at(hit)
+            ground = PartnerGround(self.body.partner.body, self.body)
+            position[hit], velocity[hit] = ground.states_on_ground(position[hit], velocity[hit], when)
         return position, velocity
 
     @cached_property
     def latitude(self) -> NDArray[np.float64]:
         """Planetocentric latitude at the end [deg]."""
-        return self.body.shape.latitude_longitude(self._on_ground[0])[0]
+        return self.body.shape.latitude_longitude(self.on_ground[0])[0]
 
     @cached_property
     def longitude(self) -> NDArray[np.float64]:
         """East longitude at the end, in (-180, 180] [deg]."""
-        return self.body.shape.latitude_longitude(self._on_ground[0])[1]
+        return self.body.shape.latitude_longitude(self.on_ground[0])[1]
 
     @cached_property
     def impact_speed(self) -> NDArray[np.float64]:
         """Speed relative to the ground at the impact [m/s], nan without one."""
-        return np.where(self.facet >= 0, np.linalg.norm(self._on_ground[1], axis=1), np.nan)
+        return np.where(self.facet >= 0, np.linalg.norm(self.on_ground[1], axis=1), np.nan)
 
     @cached_property
-    def incidence(self) -> NDArray[np.float64]:
-        """Angle of the incoming velocity from the facet's inward normal [rad], nan without an impact."""
+    def normals(self) -> NDArray[np.float64]:
+        """Outward normal of the facet that was hit, in the frame of its ground, [count, 3]; nan without an impact."""
         normals = np.full((len(self), 3), np.nan)
         hit = self.status == FlightStatus.IMPACT
         normals[hit] = self.body.shape.normals[self.facet[hit]]
         if self.body.partner is not None:
             hit = self.status == FlightStatus.PARTNER
             normals[hit] = self.body.partner.body.shape.normals[self.facet[hit]]
-        inward = -np.einsum("fi,fi->f", self._on_ground[1], normals)
+        return normals
+
+    @cached_property
+    def incidence(self) -> NDArray[np.float64]:
+        """Angle of the incoming velocity from the facet's inward normal [rad], nan without an impact."""
+        inward = -np.einsum("fi,fi->f", self.on_ground[1], self.normals)
         with np.errstate(invalid="ignore", divide="ignore"):
             return np.arccos(np.clip(inward / self.impact_speed, -1.0, 1.0))
 

@@ -8,6 +8,7 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.smallbody.body import Body
 from lithobrake.smallbody.bounce import Bounce, Impacts
 from lithobrake.smallbody.facet_grid import near_heights
+from lithobrake.smallbody.grounds import grounds_of
 from lithobrake.smallbody.sliding import OnGround, slide
 from lithobrake.smallbody.touchdown import (
     Answers,
@@ -54,8 +55,8 @@ class Bounces:
 class Sliding:
     """Another model's touchdowns, after which captured landers slide on until they rest or leave the ground.
 
-    friction: under each lander, [lander_count]; infinite: it rests where it is. rolls: they roll like balls, and
-    friction is the resistance to that.
+    body: about which they fly. friction: under each lander, [lander_count]; infinite: it rests where it is. rolls: they
+    roll like balls, and friction is the resistance to that.
     """
 
     touchdown: Touchdown
@@ -67,11 +68,15 @@ class Sliding:
         """As the other model, and then slide. Of a lander that the ground pushes off at rest the end is not known."""
         found = self.touchdown.answers(impacts)
         on = np.flatnonzero(found.outcome == TouchdownOutcome.CAPTURED)
-        if not len(on):
-            return found
-        here = impacts.at(on)
-        facet, friction = self._facets(here.position), self.friction[here.lander]
-        ground = OnGround(self.body, facet, friction, here.mass, here.spin_period, here.clock, self.rolls)
+        for number, ground in enumerate(grounds_of(self.body)):
+            if len(there := on[impacts.ground[on] == number]):
+                self._slide(found, there, impacts.at(there), ground.body)
+        return found
+
+    def _slide(self, found: Answers, on: Integers, here: ImpactStates, body: Body) -> None:
+        """Let captured landers slide, all on the ground of one body; on: their places in what is found."""
+        facet, friction = _facets(body, here.position), self.friction[here.lander]
+        ground = OnGround(body, facet, friction, here.mass, here.spin_period, here.clock, self.rolls)
         velocity = out_of_frame(here.axes, found.velocity[on])
         ends = slide(ground, here.position, velocity, here.left - found.duration[on])
         lofted = ends.leaves & ~ends.velocity.any(axis=1)
@@ -83,14 +88,14 @@ class Sliding:
         found.way[on] = into_frame(here.axes, ends.position - here.position)
         found.length[on] += ends.length
         found.duration[on] += ends.time
-        return found
 
-    def _facets(self, position: Array) -> Integers:
-        """Facets under landers that touch the ground."""
-        shape, height = self.body.shape, np.empty(len(position))
-        facet = np.empty(len(position), dtype=np.int64)
-        # A flight that comes in along the ground may end beside the facet that it has met.
-        near_heights(shape.grid, shape.corners, shape.pseudonormals, position, height, facet)
-        if (facet < 0).any():
-            raise ValueError("a captured lander is above the ground; it must be on the surface.")
-        return facet
+
+def _facets(body: Body, position: Array) -> Integers:
+    """Facets under landers that touch the ground."""
+    shape, height = body.shape, np.empty(len(position))
+    facet = np.empty(len(position), dtype=np.int64)
+    # A flight that comes in along the ground may end beside the facet that it has met.
+    near_heights(shape.grid, shape.corners, shape.pseudonormals, position, height, facet)
+    if (facet < 0).any():
+        raise ValueError("a captured lander is above the ground; it must be on the surface.")
+    return facet

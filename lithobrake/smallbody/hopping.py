@@ -115,9 +115,10 @@ def hop(
     seed       of the generator: the same call gives the same result
     progress   called with the fraction of landers that have ended
 
-    The result has the landers at their ends: end (at_rest, escaped, partner, under_way; "unknown" where the bounce had
-    no answer, or the ground pushes off what lies on it), time [s], position [m], latitude, longitude [deg], touchdowns
-    (the launch is the first), path_length, contact_length [m]. Raises ValueError for what is no number, for arrays of
+    The result has the landers at their ends: end (at_rest, escaped, under_way; partner: at rest on the partner of the
+    body, or on a planet; "unknown" where the bounce had no answer, or the ground pushes off what lies on it), ground (0
+    the body, 1 its partner), time [s], and on that body position [m], latitude, longitude [deg], touchdowns (the launch
+    is the first), path_length, contact_length [m]. Raises ValueError for what is no number, for arrays of
     other shapes, and for a bounce into the ground.
     """
     seed, bounce_limit = whole_number("seed", seed, 0), whole_number("bounce_limit", bounce_limit, 0)

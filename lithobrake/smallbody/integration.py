@@ -61,10 +61,10 @@ class FlightEnds(NamedTuple):
         numbers = np.zeros(count, dtype=np.int64), np.zeros(count), np.zeros((count, 6)), np.full(count, -1)
         return cls(*numbers, np.zeros(count, dtype=np.int64))
 
-    def of_flights(self, piece: slice) -> "FlightEnds":
-        return FlightEnds(
-            self.status[piece], self.time[piece], self.state[piece], self.facet[piece], self.step_count[piece]
-        )
+    def put(self, which: Integers, others: "FlightEnds") -> None:
+        """Put others in the places `which`."""
+        for mine, theirs in zip(self, others, strict=True):
+            mine[which] = theirs
 
 
 @kernel

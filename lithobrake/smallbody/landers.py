@@ -1,20 +1,20 @@
 """Landers that are followed from touchdown to touchdown: where they are, how they fly, and how they end."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.attitude import from_frame
+from lithobrake.smallbody.grounds import LANDED, Moments
+from lithobrake.smallbody.lander_states import LanderStates
 from lithobrake.smallbody.touchdown import FAILED, Answers, ImpactStates, Touchdown, into_frame, out_of_frame
 from lithobrake.vocabulary.array_types import Array, Integers
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import RESTS, FlightStatus, JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody.body import Body
     from lithobrake.smallbody.flight_results import Flights
     from lithobrake.smallbody.shape import Shape
 
@@ -29,9 +29,8 @@ AFTER = {
     FAILED: JourneyEnd.FAILED,
     UNKNOWN_END: UNKNOWN_END,
 }
-# The same by its flight.
+# The same by its flight, where that does not end on ground on which landers are followed.
 ENDS = {
-    FlightStatus.IMPACT: "",
     FlightStatus.ESCAPED: JourneyEnd.ESCAPED,
     FlightStatus.PARTNER: JourneyEnd.PARTNER,
     FlightStatus.FLYING: JourneyEnd.UNDER_WAY,
@@ -51,97 +50,18 @@ def on_ground(shape: "Shape", point: np.ndarray) -> np.ndarray:
 
 
 @dataclass(kw_only=True)
-class Landers:
-    """Landers under way; one entry or row a lander, vectors fixed to the body.
-
-    duration         longest journey [s]; most: touchdowns of each, after which it is under way; gravity and threads: as
-                     of `fly`
-    start            time of the first touchdown as of `fly` [s]; mass of the body [kg] and spin_period [s]
-    position         [m]; axes of the frame of the next touchdown, in rows; time since the first touchdown began [s]
-    speed            [m/s], incidence_deg, mean_incidence_deg, spin and attitude: of the next impact, as ImpactStates
-    end              a word of JourneyEnd, UNKNOWN_END, or "" while under way; reason: why it failed
-    is_down          it is on the ground, not aloft or on the partner
-    touchdowns       that have ended, and contacts with the ground in them
-    path_length      sum of the straight lines between impacts and of paths in contact [m]
-    contact_length   paths in contact with the ground alone [m], and contact_time: time of these [s]
-    """
-
-    body: "Body"
-    duration: float
-    gravity: str
-    most: int
-    threads: int | None = None
-    start: Array
-    mass: Array
-    spin_period: Array
-    position: Array
-    axes: Array
-    speed: Array
-    incidence_deg: Array
-    mean_incidence_deg: Array
-    spin: Array
-    attitude: "list[Rotation | None]" = field(init=False)
-    time: Array = field(init=False)
-    end: np.ndarray = field(init=False)
-    reason: list[str] = field(init=False)
-    is_down: np.ndarray = field(init=False)
-    touchdowns: Integers = field(init=False)
-    contacts: Integers = field(init=False)
-    path_length: Array = field(init=False)
-    contact_length: Array = field(init=False)
-    contact_time: Array = field(init=False)
-
-    def __post_init__(self) -> None:
-        count = len(self.position)
-        self.attitude, self.reason = [None] * count, [""] * count
-        # As wide as the longest of its words: NumPy cuts longer ones without notice.
-        self.end = np.full(count, "", dtype=f"<U{max(map(len, (*JourneyEnd, UNKNOWN_END)))}")
-        self.is_down = np.ones(count, dtype=bool)
-        self.touchdowns, self.contacts = (np.zeros(count, dtype=np.int64) for _ in range(2))
-        self.time, self.path_length = np.zeros(count), np.zeros(count)
-        self.contact_length, self.contact_time = np.zeros(count), np.zeros(count)
-
-    def __len__(self) -> int:
-        return len(self.end)
-
-    @property
-    def latitude(self) -> Array:
-        """Planetocentric latitude of each [deg]."""
-        latitude: Array = self.body.shape.latitude_longitude(self.position)[0]
-        return latitude
-
-    @property
-    def longitude(self) -> Array:
-        """East longitude of each, in (-180, 180] [deg]."""
-        longitude: Array = self.body.shape.latitude_longitude(self.position)[1]
-        return longitude
-
-    @property
-    def going(self) -> Integers:
-        """Places of the landers that are under way."""
-        return np.flatnonzero(self.end == "")
-
-    def clock(self, which: Integers) -> Array:
-        """Time of some landers as of `fly` [s]."""
-        clock: Array = self.start[which] + self.time[which]
-        return clock
-
-    def acceleration(self, which: Integers) -> Array:
-        """Of what rests where some landers are [m/s2], [count, 3], fixed to the body."""
-        felt: Array = self.body.felt(self.position[which], self.clock(which), self.mass[which], self.spin_period[which])
-        return felt
-
-    def ground_spin(self, which: Integers) -> Array:
-        """Angular velocity of the ground where some landers are [rad/s], [count, 3], fixed to the body."""
-        from lithobrake.smallbody.rotation import ground_spin
-
-        return ground_spin(self.body.rotation, self.clock(which), self.spin_period[which])
+class Landers(LanderStates):
+    """Landers that are followed; as LanderStates."""
 
     def impacts(self, which: Integers) -> ImpactStates:
         """The impacts of some landers that are under way."""
+        mass, period = np.empty(len(which)), np.empty(len(which))
+        for ground, there in self.on_each(which):
+            mass[there], period[there] = ground.own(self.moments(which[there]))
         return ImpactStates(
             lander=which,
             number=self.touchdowns[which],
+            ground=self.ground[which],
             position=self.position[which],
             axes=self.axes[which],
             speed=self.speed[which],
@@ -154,8 +74,8 @@ class Landers:
             time=self.time[which],
             left=self.duration - self.time[which],
             clock=self.clock(which),
-            mass=self.mass[which],
-            spin_period=self.spin_period[which],
+            mass=mass,
+            spin_period=period,
         )
 
     def go_on(self, which: Integers, answers: Answers) -> "Flights | None":
@@ -172,8 +92,10 @@ class Landers:
         attitudes = [answers.attitude[one] for one in np.flatnonzero(flies).tolist()]
         for lander, frame, attitude in zip(going.tolist(), axes, attitudes, strict=True):
             self.attitude[lander] = None if attitude is None else from_frame(frame) * attitude
-        flights = self._flown(going, *self._leaving(going, answers.rise[flies], velocity))
-        hits = np.flatnonzero(flights.status == FlightStatus.IMPACT)
+        place, velocity = self._leaving(going, answers.rise[flies], velocity)
+        spin = self._among_stars(going, spin)
+        flights = self._flown(going, place, velocity)
+        hits = np.flatnonzero(self.is_down[going])
         self._arrive(going[hits], flights, hits, spin[hits])
         return flights
 
@@ -187,19 +109,20 @@ class Landers:
         self.position[which] += out_of_frame(self.axes[which], answers.way)
         # Only those that a touchdown has moved: the search for the ground takes one lander at a time.
         for lander in which[answers.way.any(axis=1)].tolist():
-            self.position[lander] = on_ground(self.body.shape, self.position[lander])
+            self.position[lander] = on_ground(self.grounds[self.ground[lander]].body.shape, self.position[lander])
         self.end[which] = [str(AFTER[word]) for word in answers.outcome.tolist()]
+        self.end[which[(self.ground[which] > 0) & (self.end[which] == JourneyEnd.AT_REST)]] = JourneyEnd.PARTNER
         over = (self.time[which] >= self.duration) | (self.touchdowns[which] >= self.most)
         self.end[which[over & (self.end[which] == "")]] = JourneyEnd.UNDER_WAY
         for place, lander in enumerate(which.tolist()):
             word, attitude = str(answers.outcome[place]), answers.attitude[place]
             if self.end[lander] == JourneyEnd.FAILED:
                 self.reason[lander] = answers.reason[place] if word == FAILED else f"a touchdown ended as {word}"
-            elif self.end[lander] == JourneyEnd.AT_REST and attitude is not None:
+            elif self.end[lander] in RESTS and attitude is not None:
                 self.attitude[lander] = from_frame(self.axes[lander]) * attitude
 
     def _leaving(self, going: Integers, rise: Array, velocity: Array) -> tuple[Array, Array]:
-        """Places [m] and velocities [m/s] with which flights begin, [count, 3], fixed to the body.
+        """Places [m] and velocities [m/s] with which flights begin, [count, 3], fixed to the ground.
 
         A touchdown takes the lander for a point on the ground, from which its centre of mass has risen [m], [count]. A
         flight begins as far above the ground. It cannot begin below: what has sunk starts on it, and has paid for the
@@ -208,52 +131,81 @@ class Landers:
         place = self.position[going]
         if not rise.any():
             return place, velocity
-        up = self.body.shape.normals[self.body.shape.nearest(place)[1]]
+        up = np.empty_like(place)
+        for ground, there in self.on_each(going):
+            shape = ground.body.shape
+            up[there] = shape.normals[shape.nearest(place[there])[1]]
         outward, upward = (np.einsum("ni,ni->n", one, up) for one in (self.acceleration(going), velocity))
         paid = np.sqrt(np.maximum(upward**2 + 2.0 * -outward * np.minimum(rise, 0.0), 0.0))
         change = np.where((rise < 0.0) & (upward > 0.0), paid - upward, 0.0)
         return place + np.maximum(rise, 0.0)[:, None] * up, velocity + change[:, None] * up
 
-    def _flown(self, going: Integers, start: Array, velocity: Array) -> "Flights":
-        """Fly landers from their starts [m] to their next impact for what is left of their journeys."""
+    def _among_stars(self, going: Integers, spin: Array) -> Array:
+        """Spins against the stars [rad/s] along the axes of flights, [count, 3], from those against the ground.
+
+        Turns attitudes into these axes.
+        """
+        spin, when = spin + self.ground_spin(going), self.moments(going)
+        for ground, there in self.on_each(going):
+            turns = ground.turns(when.at(there))
+            if turns is not None:
+                spin[there] = out_of_frame(turns, spin[there])
+                self.turn_attitudes(going[there], turns.transpose(0, 2, 1))
+        return spin
+
+    def _flown(self, going: Integers, place: Array, velocity: Array) -> "Flights":
+        """Fly landers from places [m] and velocities [m/s] on the ground to their next impact, as long as they have."""
         from lithobrake.smallbody.flight import fly
 
+        start, speed, when = np.empty_like(place), np.empty_like(velocity), self.moments(going)
+        for ground, there in self.on_each(going):
+            start[there], speed[there] = ground.states_of_flights(place[there], velocity[there], when.at(there))
         flights = fly(
-            *(self.body, start, velocity, self.duration - self.time[going]),
+            *(self.body, start, speed, self.duration - self.time[going]),
             gravity=self.gravity,
-            start_time=self.clock(going),
-            mass=self.mass[going],
-            spin_period=self.spin_period[going],
+            start_time=when.time,
+            mass=when.mass,
+            spin_period=when.spin_period,
             # One flight has nothing to share among threads, and starting them would take longer.
             threads=1 if len(going) == 1 else self.threads,
         )
-        # The norms of single rows: that of an array rounds otherwise.
-        self.path_length[going] += [float(np.linalg.norm(way)) for way in flights.position - start]
-        self.time[going] += flights.time
-        self.position[going] = flights.position
-        self.end[going] = [str(ENDS[FlightStatus(word)]) for word in flights.status.tolist()]
-        self.is_down[going] = flights.status == FlightStatus.IMPACT
+        self._end_flights(going, flights, place)
         return flights
+
+    def _end_flights(self, going: Integers, flights: "Flights", place: Array) -> None:
+        """Put landers where their flights have ended, which began at these places on the ground [m]."""
+        before, landed = self.ground[going], LANDED[: len(self.grounds)]
+        self.is_down[going] = np.isin(flights.status, landed)
+        self.ground[going] = np.where(self.is_down[going] & (flights.status == FlightStatus.PARTNER), 1, 0)
+        self.position[going] = np.where(self.is_down[going, None], flights.on_ground[0], flights.position)
+        # On the ground that it has left a lander has come as far as that says; else along the axes of flights.
+        stays = (self.ground[going] == before)[:, None]
+        ways = np.where(stays, self.position[going] - place, flights.position - flights.start.position)
+        # The norms of single rows: that of an array rounds otherwise.
+        self.path_length[going] += [float(np.linalg.norm(way)) for way in ways]
+        self.time[going] += flights.time
+        self.end[going] = ["" if word in landed else str(ENDS[FlightStatus(word)]) for word in flights.status.tolist()]
 
     def _arrive(self, down: Integers, flights: "Flights", hits: Integers, spin: Array) -> None:
         """Landers at the ends of their flights: the ground that they meet, and how they turn.
 
-        hits: places of theirs among the flights; spin: at the start of these [rad/s], [count, 3], against the ground.
+        hits: places of theirs among the flights; spin: at the start of these against the stars [rad/s], [count, 3],
+        along their axes.
         """
-        from lithobrake.smallbody.rotation import ground_spin
-
-        ground, start, time = self.body.rotation, flights.start.time[hits], flights.time[hits]
-        period = flights.start.spin_period[hits]
+        start, time, period = (one[hits] for one in (flights.start.time, flights.time, flights.start.spin_period))
         self._meet_ground(down, flights, hits)
-        # A touchdown gives the spin against the ground, and torque-free rotation is that against axes that do not turn.
-        spin = spin + ground_spin(ground, start, period)
-        self.spin[down] = self._turned(down, spin, start, time, period) - ground_spin(ground, start + time, period)
+        spin, when = self._turned(down, spin, start, time, period), Moments(start + time, self.mass[down], period)
+        for ground, there in self.on_each(down):
+            turns = ground.turns(when.at(there))
+            if turns is not None:
+                spin[there] = into_frame(turns, spin[there])
+                self.turn_attitudes(down[there], turns)
+        self.spin[down] = spin - self.ground_spin(down, when)
 
     def _meet_ground(self, down: Integers, flights: "Flights", hits: Integers) -> None:
         """Lay the frames of the next touchdowns."""
-        velocity, incidence = flights.velocity[hits], flights.incidence[hits]
-        up = self.body.shape.normals[flights.facet[hits]]
-        self.axes[down], met = self.ground_met(down, velocity, up, incidence)
+        velocity, incidence = flights.on_ground[1][hits], flights.incidence[hits]
+        self.axes[down], met = self.ground_met(down, velocity, flights.normals[hits], incidence)
         self.speed[down] = flights.impact_speed[hits]
         self.incidence_deg[down], self.mean_incidence_deg[down] = np.degrees(met), np.degrees(incidence)
 
@@ -265,10 +217,6 @@ class Landers:
         from lithobrake.smallbody.bounce import impact_frame
 
         return impact_frame(velocity, up), incidence
-
-    def inertia(self, lander: int) -> Array:
-        """Inertia of a lander about its centre of mass [kg m2], [3, 3]; here that of a ball, in any unit."""
-        return np.eye(3)
 
     def _turned(self, down: Integers, spin: Array, start: Array, time: Array, period: Array) -> Array:
         """Spins after flights [rad/s], [count, 3], against axes that do not turn, from those before; turns attitudes.

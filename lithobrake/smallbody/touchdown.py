@@ -30,20 +30,22 @@ def out_of_frame(axes: Array, vectors: Array) -> Array:
 
 @dataclass(frozen=True)
 class ImpactStates:
-    """Landers as they meet the ground; one entry or row an impact, vectors fixed to the body.
+    """Landers as they meet the ground; one entry or row an impact, vectors fixed to the body that is met.
 
     lander         its place among all that are followed, and number of the touchdown among those of the lander, from 0
+    ground         that is met: its place among those of `grounds_of`, 0 the first body's, 1 its partner's
     position       [m]; axes, in rows, of the frame of the touchdown: x along the incoming horizontal velocity, z along
                    the normal of the ground that is met
     speed          [m/s], and incidence_deg, in that frame; mean_incidence_deg: against the facet of the shape
     spin           angular velocity against the ground [rad/s]; attitude: of the lander's axes, None where not known
     acceleration   of what rests there [m/s2], and rotation of the ground [rad/s], in the frame of the touchdown
     time           since the first touchdown began [s]; left: of the journey [s]; clock: time as of `fly` [s]
-    mass           of the body [kg]; spin_period [s]
+    mass           of the body that is met [kg]; spin_period [s]
     """
 
     lander: Integers
     number: Integers
+    ground: Integers
     position: Array
     axes: Array
     speed: Array

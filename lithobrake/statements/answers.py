@@ -213,7 +213,7 @@ def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
     count, rest = len(journeys.table["end"]), journeys.rest
     others = {name: one for name, one in data.results.ends.items() if name != JourneyEnd.AT_REST}
     if not rest.time_s.median.is_known:
-        return [_end(name, one, count) for name, one in others.items()]
+        return [_end(data, name, one, count) for name, one in others.items()]
     size, unit = time_unit(rest)
     time, distance, over = rest.time_s, rest.distance_m, data.results.over_grounds
     where = ""
@@ -226,7 +226,7 @@ def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
         _quantile(time, unit, f"median time to rest{where}", size),
         _quantile(distance, "m", f"median distance from the aim point{where}"),
         _region(rest.regions[-1]) if rest.regions else _quantile(rest.contacts, "contacts", "median"),
-        _end(likeliest, others[likeliest], count),
+        _end(data, likeliest, others[likeliest], count),
     ]
 
 
@@ -235,9 +235,9 @@ def _region(one: "RestRegion") -> Tile:
     return Tile(labels.area(one.area_m2).removesuffix(" m2"), "m²", words)
 
 
-def _end(name: str, one: "CountedShare", count: int) -> Tile:
-    interval = labels.share_interval(one.share)
-    words = f"{labels.END_WORDS[name]}, {one.count} of {count}" + (f" ({interval})" if interval else "")
+def _end(data: "PageData", name: str, one: "CountedShare", count: int) -> Tile:
+    interval, end = labels.share_interval(one.share), labels.end_words(data.results.site)[name]
+    words = f"{end}, {one.count} of {count}" + (f" ({interval})" if interval else "")
     # An end that did not occur has no colour.
     return Tile(labels.bare_share(one.share), "%", words, name if one.count else "")
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from lithobrake.statements.labels import END_WORDS, FAILED, GROUND_WORDS, RUN_WORDS
+from lithobrake.statements.labels import FAILED, GROUND_WORDS, RUN_WORDS, end_words
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
     LEVEL,
@@ -237,7 +237,7 @@ def journey_ends(scope: Scope, results: "Results") -> list[str]:
     """How many landers come to rest, from how many journeys, and how the others end."""
     rests = results.ends[JourneyEnd.AT_REST].share
     main = rest_over(results, scope.journey_time, scope.touchdowns)
-    said = f"{main} ({journey_counts(results)}).{_others(results.ends)}"
+    said = f"{main} ({journey_counts(results)}).{_others(results)}"
     return [said] if rests.why_missing is None else [said, rests.why_missing]
 
 
@@ -261,10 +261,11 @@ def journeys_at_rest(count: int, total: int) -> str:
     return f"{out_of(count, total, 'journeys')} that ended at rest"
 
 
-def _others(ends: "Mapping[str, CountedShare]") -> str:
-    """The shares of the other ends that occurred."""
-    others = {name: one for name, one in ends.items() if name != JourneyEnd.AT_REST and one.count}
-    listed = [f"{with_interval(one.share)} {END_WORDS[name]}" for name, one in others.items()]
+def _others(results: "Results") -> str:
+    """The shares of the other ends that occurred, with the body on which landers rest."""
+    words = end_words(results.site)
+    others = {name: one for name, one in results.ends.items() if name != JourneyEnd.AT_REST and one.count}
+    listed = [f"{with_interval(one.share)} {words[name]}" for name, one in others.items()]
     return f" Other ends: {', '.join(listed)}." if listed else ""
 
 

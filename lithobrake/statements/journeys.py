@@ -3,7 +3,15 @@
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from lithobrake.statements.labels import area, extent, half_width, quantile, smallest_region, two_digits
+from lithobrake.statements.labels import (
+    area,
+    extent,
+    half_width,
+    partner_words,
+    quantile,
+    smallest_region,
+    two_digits,
+)
 from lithobrake.statements.touchdowns import detected_parts, floor_words, variance, variance_parts
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
@@ -151,6 +159,12 @@ def rest_map(results: "Results", rest: "JourneyRest") -> str:
     return " ".join(said) or "Each dot is a lander."
 
 
+def _elsewhere(results: "Results") -> str:
+    """Landers on the partner in a list of those that a map of the body leaves out; empty without any."""
+    there = results.ends[JourneyEnd.PARTNER].count
+    return f"are on {partner_words(results.site)}, " if there else ""
+
+
 def outcomes(results: "Results", *, has_map: bool) -> str:
     """The shares of the ends; has_map: whether the whole body stands beside them."""
     if not has_places(results):
@@ -161,7 +175,15 @@ def outcomes(results: "Results", *, has_map: bool) -> str:
         return said
     return (
         f"{said} Map: the whole body in equal areas, on a sphere of the radius at the aim point; landers that "
-        "escaped, landed on the partner or failed are not on it."
+        f"{_elsewhere(results)}escaped or failed are not on it."
+    )
+
+
+def partner_map(results: "Results") -> str:
+    """The map of the other body of a binary."""
+    return (
+        f"Landers on the ground of {partner_words(results.site)}, by latitude and longitude on it, in equal areas on a "
+        "sphere of the mean radius of these places. Longitude 0 faces the body of the site at time 0 of the flights."
     )
 
 

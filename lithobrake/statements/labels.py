@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.known_bodies import PLANETS, printed_name
 from lithobrake.vocabulary.material_properties import PROPERTIES, SURFACE_PROPERTIES
 from lithobrake.vocabulary.number_words import at_level, interval_digits, number, percent, span
 from lithobrake.vocabulary.outcomes import (
@@ -21,6 +22,7 @@ from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, TOUCHDOWN
 if TYPE_CHECKING:
     from lithobrake.results.dispersion import RestRegion
     from lithobrake.results.run_results import VarianceParts
+    from lithobrake.results.site_results import SiteResults
 
 FAILED = "failed"
 
@@ -98,6 +100,8 @@ GROUND_WORDS = {
     "hard": "hard ground", "equivalent": "hard ground like the soil", "expansion": "soil by the expansion",
 }  # fmt: skip
 BODIES = {"didymos": "Didymos", "dimorphos": "Dimorphos"}
+# A partner that the study file gives no name.
+NAMELESS = "partner"
 # The parts of a variance, in the order of its bar.
 PART_WORDS = {
     "soil": "soil, at least", "arrival": "delivery, at least", "attitude": "attitude, at least", "bed": "bed",
@@ -155,6 +159,17 @@ def input_words(name: str) -> str:
         field, field.removeprefix("inputs.").removesuffix("_deg").replace("_", " ").replace(".", " ")
     )
     return words + {"grain": " of the grains", "lander": " of the lander", "impact": " at impact"}.get(section, "")
+
+
+def partner_words(site: "SiteResults") -> str:
+    """The other body of the binary by its name; the partner where it has none."""
+    return "the partner" if site.partner in (None, NAMELESS) else printed_name(str(site.partner))
+
+
+def end_words(site: "SiteResults") -> dict[str, str]:
+    """As END_WORDS, with the partner by its name, as "at rest on Didymos", or "on Mars", where nothing is followed."""
+    there = partner_words(site)
+    return END_WORDS | {JourneyEnd.PARTNER: f"on {there}" if site.partner in PLANETS else f"at rest on {there}"}
 
 
 def output_words(name: str) -> str:

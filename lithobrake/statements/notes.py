@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
 from lithobrake.statements.journeys import emulator, sides_down
-from lithobrake.statements.labels import GROUND_WORDS, region, two_digits
+from lithobrake.statements.labels import GROUND_WORDS, end_words, region, two_digits
 from lithobrake.statements.touchdowns import left_out
 from lithobrake.vocabulary.number_words import LEVEL, as_sentence, intervals, number, out_of, percent, thousands
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -213,9 +213,10 @@ def soils() -> str:
 def ends(results: "Results") -> str:
     """How the journeys ended, by landings and by the emulator."""
     why = next((one.share.why_missing for one in results.ends.values() if one.share.why_missing), None)
-    said = [f"{JourneyEnd(name).label}: {JourneyEnd(name).sentence}" for name, one in results.ends.items() if one.count]
+    words = end_words(results.site)
+    said = [f"{words[name]}: {JourneyEnd(name).sentence}" for name, one in results.ends.items() if one.count]
     more = [*([as_sentence(why)] if why else []), *emulator(results.emulated)]
-    return " ".join([f"{words[:1].upper()}{words[1:]}" for words in said] + more)
+    return " ".join([f"{one[:1].upper()}{one[1:]}" for one in said] + more)
 
 
 def scores() -> str:

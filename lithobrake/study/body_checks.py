@@ -128,6 +128,16 @@ def _partner_problems(study: Study) -> Iterator[str]:
         yield f"site.partner_body is given, and {why}; keep one of the two"
     if not re.fullmatch(NAME, partner.name, flags=re.ASCII):
         yield f"site.partner_body.name is {show(partner.name)}; allowed: {NAME_WORDS}; write such a name"
+    if partner.name == (site.name or Path(site.body).stem):
+        yield (
+            f"site.partner_body.name is {show(partner.name)}, the name of the body itself; allowed: another, by which "
+            "tables tell the two apart; rename one"
+        )
+    if partner.polar_diameter is not None and partner.polar_diameter > partner.diameter:
+        yield (
+            f"site.partner_body.polar_diameter is {partner.polar_diameter:g} m; allowed: up to its diameter, "
+            f"{partner.diameter:g} m, as a body that spins is flattened; exchange the two"
+        )
     if partner.period is not None and partner.distance is not None:
         yield (
             f"site.partner_body.period is {partner.period:g} s and distance {partner.distance:g} m; either follows "

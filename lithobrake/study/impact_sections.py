@@ -147,16 +147,21 @@ class RotationSection(Section):
 
 
 class PartnerSection(Section):
-    """The partner of a body that is read from a mesh, the other body of a binary or a planet: a ball on a circular
-    orbit in the plane of the equator, which attracts and may be hit. `period` or `distance` gives the orbit; with
-    neither the body keeps one face to its partner, over longitude 0."""
+    """The partner of a body that is read from a mesh, the other body of a binary or a planet: a ball or a spheroid on a
+    circular orbit in the plane of the equator, which attracts and may be hit. Landers go on there; on a planet they
+    end. `period` or `distance` gives the orbit; with neither the body keeps one face to its partner, over longitude
+    0."""
 
     name: str = "partner"
     """Name of the partner."""
     mass: Annotated[float, Number("kg", above=0, at_most=1e31)] = Field(examples=["5.3e11"])
     """Mass of the partner."""
     diameter: Annotated[float, Number("m", above=0, at_most=1e10)] = Field(examples=["780.0"])
-    """Diameter of the partner."""
+    """Diameter of the partner, at its equator."""
+    polar_diameter: Annotated[float, Number("m", above=0, at_most=1e10)] | None = None
+    """Diameter along its spin axis. Absent: that of the equator, a ball."""
+    spin_period: Annotated[float, Number("s", at_least=1, at_most=1e12)] | None = None
+    """Spin period of the partner, about the axis of the orbit. Absent: it keeps one face to the body."""
     period: Annotated[float, Number("s", above=0, at_most=1e12)] | None = None
     """Period of the orbit. Absent: it follows from `distance`, or is the spin period."""
     distance: Annotated[float, Number("m", above=0, at_most=1e12)] | None = None

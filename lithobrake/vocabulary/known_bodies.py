@@ -88,11 +88,17 @@ _BODIES = (
 KNOWN_BODIES = {body.key: body for body in _BODIES}
 
 
+def printed_name(name: str) -> str:
+    """The name of a body as it is printed, from its key or the name that a study gives it."""
+    return KNOWN_BODIES[name].name if name in KNOWN_BODIES else name
+
+
 def body_named_in(*words: str) -> KnownBody | None:
     """The known body of which one of these names has the name as a word, as the file phobos_v2.obj has."""
     found = (KNOWN_BODIES.get(part) for word in words for part in re.split(r"[\W\d_]+", word.lower()))
     return next((body for body in found if body is not None), None)
 
 
+PLANETS = ("Mercury", "Venus", "Earth", "Mars", "Jupiter", "Saturn", "Uranus", "Neptune")
 # Those whose shape comes with the package.
 BUILT_IN_BODIES = {key: body for key, body in KNOWN_BODIES.items() if body.is_built_in}

@@ -67,10 +67,17 @@ class JourneyEnd(_Ending):
 
     AT_REST = "at_rest", "The lander rests where the ground holds it.", "at rest"
     ESCAPED = "escaped", FlightStatus.ESCAPED.sentence, "escaped"
-    PARTNER = "partner", FlightStatus.PARTNER.sentence, "on the partner"
+    PARTNER = (
+        "partner",
+        "The lander rests on the other body of the binary; on a planet it is not followed.",
+        "at rest on the partner",
+    )
     UNDER_WAY = "under_way", "The lander was still under way at the time limit.", "under way"
     FAILED = "failed", "A landing or flight of the journey failed.", "failed"
 
+
+# How a journey ends that has come to rest: on the body of the site, and on its partner.
+RESTS = (JourneyEnd.AT_REST, JourneyEnd.PARTNER)
 
 # Of a captured lander also whether gravity and rotation together hold it where it lies, or lift it off.
 CAPTURED = TouchdownOutcome.CAPTURED.value

@@ -144,6 +144,7 @@ JOURNEY = {
     "journey": Quantity("", "number of the journey, from 0"),
     "bed": Quantity("", "number of the bed that it meets, from 0"),
     "end": Quantity("", "how the journey ended"),
+    "body": Quantity("", "body on whose ground it ended, in whose frame its place and attitude are"),
     "time_s": Quantity(
         "s", "time from the first touchdown to the end, or from delivery where there is none", title="time to rest"
     ),
@@ -165,7 +166,8 @@ JOURNEY = {
 # Of a lander that is followed on other ground.
 FOLLOWED = {
     "ground": Quantity("", "hard, equivalent (hard ground with the restitution of the soil), or expansion"),
-    **{name: JOURNEY[name] for name in ("journey", "end", "time_s", "latitude_deg", "longitude_deg", "distance")},
+    **{name: JOURNEY[name] for name in ("journey", "end", "body", "time_s")},
+    **{name: JOURNEY[name] for name in ("latitude_deg", "longitude_deg", "distance")},
     "touchdowns": Quantity("", "impacts, the last one included"),
     "path_length": JOURNEY["path_length"],
     "slid_length": Quantity("m", "path along the ground, in contact with it"),
@@ -191,6 +193,7 @@ JOURNEY_TOUCHDOWN = {
     "touchdown": Quantity("", "number of the touchdown in its journey, from 0"),
     "key": Quantity("", "key of the landing in the ledger"),
     "outcome": Quantity("", "how the touchdown ended"),
+    "body": Quantity("", "body on whose ground it is, in whose frame its place and velocity are"),
     "begin_s": Quantity("s", "time from the first touchdown of the journey to the beginning"),
     "end_s": Quantity("s", "time from the first touchdown of the journey to the end"),
     "latitude_deg": Quantity("deg", "planetocentric latitude of the impact", FIXED),

@@ -21,6 +21,7 @@ from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.site import SITE_KEYS, Site, with_site_gravity
 from lithobrake.smallbody import Body
 from lithobrake.smallbody.built_in_bodies import top_shape
+from lithobrake.statements.labels import end_words
 from lithobrake.study import Study, StudyError, check_tables
 from lithobrake.study.template import template
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
@@ -116,6 +117,26 @@ def test_the_orbit_of_a_partner_follows_from_its_distance_as_from_its_period(tmp
     assert flight_dependencies(site.study) != flight_dependencies(again.study)
 
 
+def test_a_partner_has_a_spin_and_a_flattening_of_its_own(tmp_path: Path) -> None:
+    """Without them it is a ball that keeps one face to the body. A spheroid has C - A = m (a^2 - c^2) / 5."""
+    given = {"name": "Other", "mass": 1e15, "diameter": 5e3, "distance": 4e5}
+    plain = phobos(tmp_path, partner_body=given).body.partner
+    assert plain.body.spin_period == plain.period
+    own = phobos(tmp_path, partner_body=given | {"spin_period": 8136.0, "polar_diameter": 4e3}).body.partner.body
+    assert own.spin_period == 8136.0
+    assert own.shape.volume == pytest.approx(0.8 * math.pi / 6.0 * 5e3**3, rel=1e-9)
+    # The ball of facets is round by its moments of inertia as a whole to a few parts in a million.
+    assert own.flattening == pytest.approx((2.5e3**2 - 2e3**2) / 5.0, rel=1e-5)
+
+
+def test_a_lander_goes_on_on_a_small_body_and_not_on_a_planet(tmp_path: Path) -> None:
+    small = {"name": "Other", "mass": 1e15, "diameter": 5e3, "distance": 4e5}
+    assert phobos(tmp_path, partner_body=small, name="Phobos").ground_names == ("Phobos", "Other")
+    assert phobos(tmp_path, partner_body=MARS, name="Phobos").ground_names == ("Phobos",)
+    said = [end_words(site_results(phobos(tmp_path, partner_body=one)))["partner"] for one in (small, MARS)]
+    assert said == ["at rest on Other", "on Mars"]
+
+
 def test_a_density_is_a_mass_over_the_volume_of_the_shape(tmp_path: Path) -> None:
     volume, mass = phobos(tmp_path).body.shape.volume, PHOBOS["mass"]
     uncertain = {"distribution": "uniform", "lower": 1800.0, "upper": 1900.0}
@@ -137,6 +158,12 @@ def test_a_density_is_a_mass_over_the_volume_of_the_shape(tmp_path: Path) -> Non
     ({"partner_body": MARS, "body": "dimorphos"}, 'and site.body is "dimorphos", which has its own'),
     ({"partner_body": MARS | {"name": "<b>"}}, "site.partner_body.name is \"<b>\"; allowed: 1 to 40 letters"),
     ({"partner_body": {"mass": 1e10}}, "site.partner_body.diameter is missing"),
+    ({"partner_body": MARS | {"name": "Phobos"}, "name": "Phobos"}, "the name of the body itself; allowed: another"),
+    ({"partner_body": MARS | {"polar_diameter": 7e6}}, "allowed: up to its diameter, 6.779e\\+06 m"),
+    ({"partner_body": MARS | {"polar_diameter": 0.0}}, "site.partner_body.polar_diameter is 0; allowed: above 0"),
+    ({"partner_body": MARS | {"spin_period": 0.5}}, "site.partner_body.spin_period is 0.5; allowed: at least 1"),
+    ({"partner_body": MARS | {"spin_period": -3600.0}}, "site.partner_body.spin_period is -3600"),
+    ({"partner_body": MARS | {"spin_period": math.inf}}, "site.partner_body.spin_period is inf"),
 ])  # fmt: skip
 def test_partners_and_densities_that_cannot_be_are_refused(site: dict[str, Any], words: str, tmp_path: Path) -> None:
     with pytest.raises(StudyError, match=words):

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 import lithobrake
 from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.report.figures.style import STYLE
-from lithobrake.statements.labels import END_WORDS
+from lithobrake.statements.labels import end_words
 
 
 def test_what_becomes_of_the_landings_is_that_of_the_summary(first_folder: Path) -> None:
@@ -65,7 +65,10 @@ def widths(axes: Axes) -> dict[str, float]:
 def test_bars_of_ends_and_sides_are_their_shares(asked_folder: Path) -> None:
     study = lithobrake.open_study(asked_folder)
     for axes, shares in (
-        (study.plot.ends(Figure().subplots()), {END_WORDS[end]: one for end, one in study.results.ends.items()}),
+        (
+            study.plot.ends(Figure().subplots()),
+            {end_words(study.results.site)[end]: one for end, one in study.results.ends.items()},
+        ),
         (study.plot.sides(Figure().subplots()), study.results.rest.faces),
     ):
         assert widths(axes) == pytest.approx({name: 100 * one.share.value for name, one in shares.items()})

@@ -136,19 +136,20 @@ def test_what_is_no_landing_has_no_contact_sheet(motion: MovingBodies, tmp_path:
 
 
 PHONE, LAPTOP = 390, 1280
-ROW: dict[str, Any] = {"journey": 7, "end": "at_rest", "time_s": 5000.0, "latitude_deg": 12.0, "longitude_deg": -178.0,
-    "distance": 9.0, "contacts": 4, "face": "-z", "tilt_deg": 12.34, "reason": ""}  # fmt: skip
+ROW: dict[str, Any] = {"journey": 7, "end": "at_rest", "body": "dimorphos", "time_s": 5000.0,
+    "latitude_deg": 12.0, "longitude_deg": -178.0, "distance": 9.0, "contacts": 4,
+    "face": "-z", "tilt_deg": 12.34, "reason": ""}  # fmt: skip
 
 
 def track(**changes: Any) -> JourneyTrack:
     """Three touchdowns across the half turn of longitude; changes: of the row of the journey."""
     touchdowns = (
-        TouchdownFacts(0, 0.0, 10.0, 0.1, 20.0, "clear", 0.05, 10.0, 179.0),
-        TouchdownFacts(1, 1000.0, 1020.0, 0.06, 40.0, "clear", 0.03, 11.0, -179.5),
-        TouchdownFacts(2, 4000.0, 5000.0, 0.03, 60.0, "captured", None, 11.5, -179.0),
+        TouchdownFacts(0, 0.0, 10.0, 0.1, 20.0, "clear", 0.05, 10.0, 179.0, "dimorphos", 80.0),
+        TouchdownFacts(1, 1000.0, 1020.0, 0.06, 40.0, "clear", 0.03, 11.0, -179.5, "dimorphos", 80.0),
+        TouchdownFacts(2, 4000.0, 5000.0, 0.03, 60.0, "captured", None, 11.5, -179.0, "dimorphos", 80.0),
     )
     sphere = 80.0 * np.vstack([np.eye(3), -np.eye(3)])
-    return JourneyTrack({**ROW, **changes}, touchdowns, (10.0, 178.0), 80.0, sphere, 0.0)
+    return JourneyTrack({**ROW, **changes}, touchdowns, (10.0, 178.0), 80.0, sphere, 0.0, "didymos")
 
 
 def bodies(way: float) -> MovingBodies:

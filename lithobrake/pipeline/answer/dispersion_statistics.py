@@ -128,10 +128,12 @@ def proportion(count: int, total: int) -> CountedShare:
 
 def delivery_results(job: Job, first: DesignRuns, journey_count: int) -> DeliveryResults:
     """Those of a folder; first: its first touchdowns. Raises DamagedFileError for files that are not a study's."""
-    columns = ("touchdown", "latitude_deg", "longitude_deg", *POSITION)
+    columns = ("latitude_deg", "longitude_deg", "touchdown", "body", *POSITION)
     rows = [row for row in read_rows(job.folder / TOUCHDOWNS_FILE, columns, AGAIN) if row["touchdown"] == "0"]
-    latitude, longitude = (np.array([float(row[name]) for row in rows]) for name in columns[1:3])
-    density = highest_density(np.array([[float(row[name]) for name in POSITION] for row in rows]), SHARES)
+    here = [row for row in rows if row["body"] == job.site.ground_names[0]]
+    latitude, longitude = (np.array([float(row[name]) for row in here]) for name in columns[:2])
+    places = np.array([[float(row[name]) for name in POSITION] for row in here]).reshape(-1, 3)
+    density = highest_density(places, SHARES)
     flights = read_rows(job.folder / ARCS_FILE, ("begin_s",), AGAIN)
     descents = np.array([-float(row["begin_s"]) for row in flights if float(row["begin_s"]) < 0.0])
     return DeliveryResults(

@@ -180,7 +180,9 @@ def soil_shares(job: Job, table: JourneyTable) -> dict[str, SoilResults]:
     """By region, in the order of the study file and elsewhere last; empty for a study that has one soil."""
     if not job.study.soil:
         return {}
-    rows = read_rows(job.folder / TOUCHDOWNS_FILE, ("journey", "outcome", *SOIL), AGAIN)
+    rows = read_rows(job.folder / TOUCHDOWNS_FILE, ("journey", "outcome", "body", *SOIL), AGAIN)
+    # Regions are of the body of the site, and so is the ground elsewhere.
+    rows = [row for row in rows if row["body"] == job.site.ground_names[0]]
     journey, soil = np.array([int(row["journey"]) for row in rows]), np.array([row["soil"] for row in rows])
     captured = np.array([row["outcome"] for row in rows]) == TouchdownOutcome.CAPTURED
     soils, why, found = Soils(job.site), why_no_interval(job.study), {}
@@ -202,6 +204,8 @@ def sky_results(study: Study, folder: StudyFolder, table: JourneyTable) -> dict[
     if not study.sky.bodies or not table.rests.any():
         return {}
     rows = read_rows(folder / SKY_FILE, ("journey", "body", "day_fraction", "least_day_fraction"), AGAIN)
+    # Rows of landers on the partner are left out here.
+    rows = [row for row in rows if table.rests[int(row["journey"])]]
     return {name: _of(study, [row for row in rows if row["body"] == name], table) for name in study.sky.bodies}
 
 

@@ -234,7 +234,8 @@ class OneJourney:
         site, descent = self.journeys.design.site, _descent(self.journeys, self.lander)
         facts = [_facts(*one, descent) for one in zip(self._touchdowns, self.landings, strict=True)]
         row = dict(zip(JOURNEY, self.journeys.row(self.lander), strict=True))
-        return JourneyTrack(row, tuple(facts), site.aim, site.aim_radius, site.body.shape.vertices, descent)
+        partner = None if site.body.partner is None else site.body.partner.body.name
+        return JourneyTrack(row, tuple(facts), site.aim, site.aim_radius, site.body.shape.vertices, descent, partner)
 
     @property
     def _touchdowns(self) -> list[dict[str, Any]]:
@@ -308,11 +309,12 @@ def _record(study: Study, landing: OneLanding, context: Mapping[str, Any]) -> Re
 
 def _line(journeys: Journeys, lander: int, landing: OneLanding) -> str:
     facts, there = _facts(journeys.touchdowns[lander][-1], landing, _descent(journeys, lander)), None
-    word, site = str(journeys.landers.end[lander]), journeys.design.site
+    word, site, landers = str(journeys.landers.end[lander]), journeys.design.site, journeys.landers
     if not word:
-        latitude, longitude = site.body.shape.latitude_longitude(journeys.landers.position[lander])
-        there = float(latitude), float(longitude)
-    return facts.line(facts.to_next(there, site.aim_radius, JourneyEnd(word) if word else None))
+        latitude, longitude = site.body.shape.latitude_longitude(landers.position[lander])
+        there = site.ground_names[landers.ground[lander]], float(latitude), float(longitude)
+    radius = site.aim_radius if facts.body == site.ground_names[0] else facts.radius
+    return facts.line(facts.to_next(there, radius, JourneyEnd(word) if word else None))
 
 
 def _descent(journeys: Journeys, lander: int) -> float:

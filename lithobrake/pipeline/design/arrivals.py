@@ -29,7 +29,8 @@ from lithobrake.vocabulary.quantities import (
 )
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import AttitudeHistory, Body
+    from lithobrake.smallbody import AttitudeHistory
+    from lithobrake.smallbody.grounds import BodyGround, Moments
 
 # A lander that comes in along the ground meets it from above all the same.
 FLATTEST_DEG = 89.9
@@ -214,6 +215,8 @@ def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
 
     Under the acceleration there, too, unless the study gives all of them one.
     """
+    from lithobrake.smallbody.grounds import BodyGround, Moments
+
     study = site.study
     columns = {key: values[first:] for key, values in site.sampled(first + len(rows)).items()}
     origin, axes = site.frames(columns)
@@ -221,23 +224,16 @@ def on_local_ground(site: Site, rows: Sequence[Row], first: int) -> list[Row]:
     arriving = Soils(site).on_soil(on_rough_ground(study, rows, axes, met), origin)
     if not study.has_local_ground:
         return arriving
-    return on_ground(site.body, arriving, origin, met, site.clock(columns), columns["mass"], columns["spin_period"])
+    when = Moments(site.clock(columns), columns["mass"], columns["spin_period"])
+    return on_ground(BodyGround(site.body), arriving, origin, met, when)
 
 
 def on_ground(
-    body: "Body",
-    rows: Sequence[Row],
-    origin: np.ndarray,
-    axes: np.ndarray,
-    time: np.ndarray,
-    mass: np.ndarray,
-    spin_period: np.ndarray,
+    ground: "BodyGround", rows: Sequence[Row], origin: np.ndarray, axes: np.ndarray, when: "Moments"
 ) -> list[Row]:
     """Touchdowns on the turning ground at their origins [m], [count, 3], in frames with these axes, [count, 3, 3]."""
-    from lithobrake.smallbody.rotation import ground_spin
-
-    local = np.einsum("nij,nj->ni", axes, body.felt(origin, time, mass, spin_period))
-    turns = np.einsum("nij,nj->ni", axes, ground_spin(body.rotation, time, spin_period))
+    local = np.einsum("nij,nj->ni", axes, ground.felt(origin, when))
+    turns = np.einsum("nij,nj->ni", axes, ground.spin(when))
     return [
         row | ground_inputs(one, row[IMPACT_AZIMUTH], friction_of(row)) | rotation_inputs(turn, row[IMPACT_AZIMUTH])
         for row, one, turn in zip(rows, local, turns, strict=True)

@@ -84,8 +84,12 @@ class BedGrounds:
                 found[name] = (LogUniform if name == GROUND_SIZE else Uniform)(low, high)
         return found
 
-    def bed_at(self, journey: int, bed: int, first: np.ndarray, place: np.ndarray) -> int:
+    def bed_at(
+        self, journey: int, bed: int, first: np.ndarray, place: np.ndarray, bodies: tuple[int, int] = (0, 0)
+    ) -> int:
         """The bed that a lander meets at a place [m], [3], whose own bed is that of another place.
+
+        bodies: of the other place and of this one, 0 that of the site, 1 its partner.
 
         A region that names a kind of ground has a bed of this kind, and ground steeper than soil holds is rock, where
         the study has rock. Where the ground is patchy, patches are the cubes of a grid that is fixed to the body; each
@@ -96,11 +100,14 @@ class BedGrounds:
             return bed
         patch = np.floor(place / ground.patch).astype(int).tolist() if ground.unknown != "everywhere" else []
         here = patch != (np.floor(first / ground.patch).astype(int).tolist() if patch else [])
-        kinds = self._kinds_at(place)
+        here |= bodies[0] != bodies[1] and bool(patch)
+        # Regions, and slopes by which ground is rock, are those of the body of the site.
+        kinds = None if bodies[1] else self._kinds_at(place)
         if not here and (kinds is None or self.each[bed].kind in kinds):
             return bed
         beds = [number for number, one in enumerate(self.each) if kinds is None or one.kind in kinds]
-        chance = np.random.default_rng(hashed_seed(self.site.study.seed, "patch", journey, *patch))
+        there = [*patch, *bodies[1:]] if bodies[1] else patch
+        chance = np.random.default_rng(hashed_seed(self.site.study.seed, "patch", journey, *there))
         if ground.unknown == "both" and beds:
             own, present = self.each[bed].weights, sorted({self.each[number].number for number in beds})
             weights = np.array([own[number] for number in present])

@@ -21,12 +21,14 @@ from lithobrake.study.lander_checks import lander_radius
 from lithobrake.study.state_paths import DeliveredStates
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
+from lithobrake.vocabulary.known_bodies import printed_name
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, Row
 
 if TYPE_CHECKING:
     from lithobrake.smallbody import Flights, Shape
+    from lithobrake.smallbody.grounds import Moments
 
 # Coordinates of the sequence of a study beside the others.
 RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
@@ -34,7 +36,7 @@ RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
 POLAR = 1e-9
 # A start so far below the ground is on it, of a millionth of the radius and at most [m].
 SLACK_PART, MOST_SLACK = 1e-6, 1e-3
-WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "land on the partner"}
+WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "hit the planet"}
 
 
 def released_states(release: ReleaseSection, uniforms: Array, first: int, pole: Array) -> DeliveredStates:
@@ -142,7 +144,7 @@ class Descents:
             mass=columns["mass"],
             spin_period=columns["spin_period"],
         )
-        down = flights.status == FlightStatus.IMPACT
+        down = _landed(flights)
         axes, incidence = _met_ground(study, flights, down, first)
         falling = [states.source[row] for row in np.flatnonzero(down).tolist()]
         fastest = _refuse_fast(study, flights.impact_speed[down], falling)
@@ -153,9 +155,24 @@ class Descents:
 
     @property
     def touches_down(self) -> np.ndarray:
-        """Which landers reach the ground of the body, [count]."""
-        down: np.ndarray = self.flights.status == FlightStatus.IMPACT
-        return down
+        """Which landers reach the ground of the body or of its partner, [count]."""
+        return _landed(self.flights)
+
+    @property
+    def ground(self) -> np.ndarray:
+        """Which ground each reaches, [count]: 0 that of the body, 1 that of its partner; 0 of what reaches none."""
+        found: np.ndarray = (self.touches_down & (self.flights.status == FlightStatus.PARTNER)).astype(np.int64)
+        return found
+
+    @property
+    def reach(self) -> float:
+        """The fraction of the landers that reach the ground of the body of the site."""
+        return float((self.touches_down & (self.ground == 0)).mean())
+
+    @property
+    def position(self) -> np.ndarray:
+        """Where flights end [m], [count, 3], fixed to the body that each reaches."""
+        return np.where(self.touches_down[:, None], self.flights.on_ground[0], self.flights.position)
 
     @property
     def clock(self) -> np.ndarray:
@@ -165,17 +182,30 @@ class Descents:
 
     def first_touchdowns(self, rows: Sequence[Row]) -> list[Row]:
         """Rows of all journeys as the first touchdowns of those that reach the ground, with what the flight tells."""
+        from lithobrake.smallbody.grounds import grounds_of
+
         flights, down = self.flights, np.flatnonzero(self.touches_down)
-        found = []
+        found: list[Row] = []
         for lander in down.tolist():
             row = rows[lander] | self._impact(lander)
             found.append(row | self._attitude(lander, row))
-        start = flights.start
-        found = Soils(self.site).on_soil(found, flights.position[down])
-        return arrivals.on_ground(
-            flights.body, found, flights.position[down], self.axes[down], self.clock[down], start.mass[down],
-            start.spin_period[down],
-        )  # fmt: skip
+        for number, ground in enumerate(grounds_of(flights.body)):
+            there = np.flatnonzero(self.ground[down] == number)
+            if len(there):
+                landers, rows = down[there], [found[row] for row in there.tolist()]
+                states = self.position[landers], self.axes[landers], self._moments(landers)
+                # Regions with a soil of their own are those of the body of the site.
+                rows = rows if number else Soils(self.site).on_soil(rows, self.position[landers])
+                for place, met in zip(there.tolist(), arrivals.on_ground(ground, rows, *states), strict=True):
+                    found[place] = met
+        return found
+
+    def _moments(self, landers: np.ndarray) -> "Moments":
+        """The ends of the flights of some landers."""
+        from lithobrake.smallbody.grounds import Moments
+
+        start = self.flights.start
+        return Moments(self.clock[landers], start.mass[landers], start.spin_period[landers])
 
     def _impact(self, lander: int) -> Row:
         met = arrivals.impact_inputs(float(self.flights.impact_speed[lander]), float(self.incidence[lander]))
@@ -192,17 +222,35 @@ class Descents:
         attitude, spin = arrivals.turned_in_flight(
             *(inertia, self.attitude[lander], self.spin[lander], period, time), ground=ground, start=start
         )
+        if self.ground[lander]:
+            attitude, spin = self._onto_partner(lander, attitude, spin)
         return arrivals.attitude_inputs(self.axes[lander], row[IMPACT_AZIMUTH], attitude, spin)
+
+    def _onto_partner(self, lander: int, attitude: Rotation, spin: np.ndarray) -> tuple[Rotation, np.ndarray]:
+        """Attitude and spin [rad/s] of a lander against the ground of the partner, from those against the body's."""
+        from lithobrake.smallbody.grounds import grounds_of
+
+        own, partner = grounds_of(self.flights.body)
+        when = self._moments(np.array([lander]))
+        turns = partner.turns(when)
+        assert turns is not None
+        whole = turns[0] @ (spin + own.spin(when)[0])
+        return Rotation.from_matrix(turns[0]) * attitude, whole - partner.spin(when)[0]
+
+
+def _landed(flights: "Flights") -> np.ndarray:
+    """Which flights end on ground on which landers are followed, [count]."""
+    from lithobrake.smallbody.grounds import LANDED, grounds_of
+
+    return np.isin(flights.status, LANDED[: len(grounds_of(flights.body))])
 
 
 def _met_ground(study: Study, flights: "Flights", down: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
     """Axes and incidences of the first touchdowns of the landers that are down; axes of the others: the body's."""
     axes, incidence = np.tile(np.eye(3), (len(flights), 1, 1)), np.array(flights.incidence)
-    up = flights.body.shape.normals[flights.facet[down]]
     journeys = (first + np.flatnonzero(down)).tolist()
-    axes[down], incidence[down] = arrivals.met_ground(
-        study, flights.velocity[down], up, incidence[down], lambda: arrivals.first_uniforms(study, journeys)
-    )
+    met = flights.on_ground[1][down], flights.normals[down], incidence[down]
+    axes[down], incidence[down] = arrivals.met_ground(study, *met, lambda: arrivals.first_uniforms(study, journeys))
     return axes, incidence
 
 
@@ -309,13 +357,15 @@ def descents_in_words(descents: Descents) -> str:
             f", {duration(time.min())} to {duration(time.max())} after their state, at "
             f"{span_of((speed.min(), speed.max()))} cm/s"
         )
+    there = int(descents.ground.sum())
+    said += f", {there} of them on {printed_name(descents.site.ground_names[1])}" if there else ""
     ends = [f"{number} {WORDS.get(FlightStatus(one), 'still fly')}" for one, number in others.items()]
-    return "; ".join([said, *ends]) + "." + (_places(descents) if down.any() else "")
+    return "; ".join([said, *ends]) + "." + (_places(descents) if (down & (descents.ground == 0)).any() else "")
 
 
 def _places(descents: Descents) -> str:
     """Where the first touchdowns lie about the aim point, whose distance is an arc of the radius there."""
-    site, places = descents.site, descents.flights.position[descents.touches_down]
+    site, places = descents.site, descents.position[descents.touches_down & (descents.ground == 0)]
     near, middle, far = np.quantile(site.ways_from_aim(places), QUANTILES)
     shape = site.body.shape
     latitude, longitude = shape.latitude_longitude(directions(*shape.latitude_longitude(places)).mean(axis=0))

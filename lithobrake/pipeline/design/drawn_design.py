@@ -282,11 +282,12 @@ class DrawnDesign:
             sampled = self.site.sampled(first + len(rows))
             places = self.site.frames({key: values[first:] for key, values in sampled.items()})[0]
         else:
-            places = descents.flights.position
+            places = descents.position
+        bodies = [0] * len(rows) if descents is None else descents.ground.tolist()
         found = []
-        for number, (row, place) in enumerate(zip(rows, places, strict=True), start=first):
+        for number, (row, place, body) in enumerate(zip(rows, places, bodies, strict=True), start=first):
             before = int(row["bed"])
-            bed = self.grounds.bed_at(number, before, place, place)
+            bed = self.grounds.bed_at(number, before, place, place, (body, body))
             if bed != before:
                 own = {name: float(values[0]) for name, values in self.own_soils(np.array([number])).items()}
                 row = row | own | self.grounds.of(bed, own) | self.grounds.moved(row, bed)

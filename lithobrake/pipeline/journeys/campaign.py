@@ -25,7 +25,7 @@ from lithobrake.smallbody.landers import ENDS
 from lithobrake.smallbody.touchdown import FAILED
 from lithobrake.vocabulary.file_names import ARCS_FILE, JOURNEYS_FILE, RUNS_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import out_of, percent
-from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd
+from lithobrake.vocabulary.outcomes import RESTS, FlightStatus, JourneyEnd
 from lithobrake.vocabulary.quantities import ARC, IMPACT_INCIDENCE, IMPACT_SPEED, JOURNEY, JOURNEY_TOUCHDOWN, SOIL
 
 if TYPE_CHECKING:
@@ -107,13 +107,14 @@ class Journeys:
             "touchdown": int(landers.touchdowns[lander]),
             "key": record.key,
             "outcome": record.outcome or FAILED,
+            "body": self.design.site.ground_names[landers.ground[lander]],
             "begin_s": float(landers.time[lander]),
             "end_s": end,
             "latitude_deg": latitude,
             "longitude_deg": longitude,
             **{f"position_{axis}": float(value) for axis, value in zip("xyz", place, strict=True)},
             **{f"velocity_{axis}": float(value) for axis, value in zip("xyz", self._incoming(lander), strict=True)},
-            **self._landing_rows.soil_column(place),
+            **self._landing_rows.soil_column(place, int(landers.ground[lander])),
         }
 
     def _incoming(self, lander: int) -> np.ndarray:
@@ -125,18 +126,21 @@ class Journeys:
         return incoming
 
     def row(self, lander: int) -> list[Any]:
-        """Where a journey ended; what is not on the ground has no place there, what does not rest no side."""
-        landers, end = self.landers, str(self.landers.end[lander])
+        """Where a journey ended; what is not on the ground has no place there, what does not rest no side.
+
+        The distance is that from the aim point, of which there is none on the partner.
+        """
+        landers, end, body = self.landers, str(self.landers.end[lander]), ""
         place: list[Any] = ["", "", "", "", "", ""]
-        if end in (JourneyEnd.AT_REST, JourneyEnd.UNDER_WAY) and landers.is_down[lander]:
-            position = landers.position[lander]
+        if end in (*RESTS, JourneyEnd.UNDER_WAY) and landers.is_down[lander]:
+            position, ground = landers.position[lander], int(landers.ground[lander])
             latitude, longitude = (float(one) for one in landers.body.shape.latitude_longitude(position))
-            away = float(self.design.site.ways_from_aim(position))
-            place = [latitude, longitude, *position.tolist(), away]
+            away = "" if ground else float(self.design.site.ways_from_aim(position))
+            body, place = self.design.site.ground_names[ground], [latitude, longitude, *position.tolist(), away]
         counts = [int(landers.contacts[lander]), int(landers.touchdowns[lander]), float(landers.path_length[lander])]
         bed, time = int(self.rows[lander]["bed"]), float(landers.time[lander])
-        lies = self._lies(lander) if end == JourneyEnd.AT_REST else [""] * 6
-        return [self.number(lander), bed, end, time, *place, *counts, *lies, landers.reason[lander]]
+        lies = self._lies(lander) if end in RESTS and body else [""] * 6
+        return [self.number(lander), bed, end, body, time, *place, *counts, *lies, landers.reason[lander]]
 
     def _lies(self, lander: int) -> list[Any]:
         """Side, tilt and attitude of a lander at rest; none of a ball, or where the touchdown has no attitude."""

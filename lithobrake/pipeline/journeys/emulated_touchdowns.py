@@ -68,8 +68,9 @@ class EmulatedTouchdowns:
         own = {name: values[impacts.lander] for name, values in self._own_soils.items()}
         rows = []
         for place, lander in enumerate(impacts.lander.tolist()):
-            first = int(begin.rows[lander]["bed"])
-            bed = design.grounds.bed_at(int(begin.number[lander]), first, begin.origin[lander], impacts.position[place])
+            first, bodies = int(begin.rows[lander]["bed"]), (int(begin.ground[lander]), int(impacts.ground[place]))
+            there = begin.origin[lander], impacts.position[place]
+            bed = design.grounds.bed_at(int(begin.number[lander]), first, *there, bodies)
             mine = {name: float(values[place]) for name, values in own.items()}
             rows.append(mine | design.grounds.of(bed, mine))
         return {name: np.array([row[name] for row in rows]) for name in self.soil if name in rows[0]}
@@ -83,7 +84,11 @@ class EmulatedTouchdowns:
             {name: values[which] for name, values in self._own_soils.items()},
             self.emulator.refits[0].runs.inputs,
         )
-        met = self._soils.met(self.begin.number[which], own, impacts.position)
+        met, there = {name: values.copy() for name, values in own.items()}, np.flatnonzero(impacts.ground == 0)
+        # Regions are of the body of the site alone.
+        own = {name: values[there] for name, values in own.items()}
+        for name, values in self._soils.met(self.begin.number[which[there]], own, impacts.position[there]).items():
+            met[name][there] = values
         # A law without an end has one in the emulator.
         return {name: np.clip(values, *laws[name].support) if name in laws else values for name, values in met.items()}
 

@@ -20,7 +20,7 @@ class Arrivals:
 
     number: of the journey of each; rows: inputs of its first touchdown; site: columns of SITE_KEYS [count]; origin [m],
     [count, 3], and axes, in rows, [count, 3, 3], of the frames of the touchdowns, body-fixed; clock [s]: as of the
-    partner; refit: of the emulator, which a lander keeps.
+    partner; refit: of the emulator, which a lander keeps; ground: that each is on, as of `Landers`, [count].
     """
 
     number: np.ndarray
@@ -30,6 +30,7 @@ class Arrivals:
     axes: np.ndarray
     clock: np.ndarray
     refit: np.ndarray
+    ground: np.ndarray
 
     @classmethod
     def of(
@@ -38,7 +39,8 @@ class Arrivals:
         """Those of these rows at these places, by columns of SITE_KEYS [count]."""
         origin, mean_axes = place.frames(site)
         axes = first_axes(place.study, mean_axes, rows)
-        return cls(number, rows, site, origin, axes, np.broadcast_to(place.clock(site), number.shape), refit)
+        clock, ground = np.broadcast_to(place.clock(site), number.shape), np.zeros(len(number), dtype=np.int64)
+        return cls(number, rows, site, origin, axes, clock, refit, ground)
 
     @classmethod
     def of_rows(cls, site: Site, rows: list[Row], first: int) -> "Arrivals":
@@ -66,15 +68,15 @@ class Arrivals:
         number = np.arange(len(beds))
         # The spin period and mass are those that the flights had; the aim is that of the study.
         site = descents.site.sampled(len(beds)) | {"mass": start.mass, "spin_period": start.spin_period}
-        states = (descents.flights.position, descents.axes, descents.clock)
-        return cls(number, all_rows, site, *states, number % REFIT_COUNT)
+        states = (descents.position, descents.axes, descents.clock)
+        return cls(number, all_rows, site, *states, number % REFIT_COUNT, descents.ground)
 
     def taken(self, which: np.ndarray, refit: np.ndarray) -> "Arrivals":
         """Some of the landers, or some of them several times, with these refits."""
         site = {key: values[which] for key, values in self.site.items()}
         rows = [self.rows[one] for one in which.tolist()]
         states = (self.origin[which], self.axes[which], self.clock[which])
-        return Arrivals(self.number[which], rows, site, *states, refit)
+        return Arrivals(self.number[which], rows, site, *states, refit, self.ground[which])
 
     def column(self, name: str) -> np.ndarray:
         """One input of the first touchdowns [count], in the file's unit; 0 of a lander that never touches down."""

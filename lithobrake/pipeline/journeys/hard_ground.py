@@ -111,13 +111,15 @@ def _grounds(job: Job, begin: Arrivals) -> Iterator[tuple[str, Touchdown]]:
 
 
 def followed_rows(ground: str, landers: StudyLanders) -> list[list[Any]]:
-    """A row of rest.csv for each lander; what is not on the ground of the body has no place there."""
-    latitude, longitude = landers.body.shape.latitude_longitude(landers.position)
+    """A row of rest.csv for each lander; what is not on the ground has no place, on the partner no distance."""
+    bodies, ways = np.array(landers.design.site.ground_names)[landers.ground], landers.ways_from_aims.astype(object)
+    ways[landers.ground > 0] = ""
     columns = (
-        *(landers.begin.number, landers.end, landers.time, latitude, longitude, landers.ways_from_aims),
+        *(landers.begin.number, landers.end, bodies, landers.time, landers.latitude, landers.longitude, ways),
         *(landers.touchdowns, landers.path_length, landers.contact_length, landers.contact_time),
     )
     rows = [[ground, *row] for row in zip(*(column.tolist() for column in columns), strict=True)]
     for lander in np.flatnonzero(~landers.is_down).tolist():
-        rows[lander][4:7] = ["", "", ""]
+        rows[lander][3] = ""
+        rows[lander][5:8] = ["", "", ""]
     return rows

@@ -59,7 +59,7 @@ class StudyLanders(Landers):
         """Landers at their first touchdowns, followed for at most so many; None: as many as any lander has."""
         study, incidence = design.study, begin.column(IMPACT_INCIDENCE)
         facets = [row.get(arrivals.MEAN_INCIDENCE, one) for row, one in zip(begin.rows, incidence, strict=True)]
-        return cls(
+        landers = cls(
             design=design,
             begin=begin,
             body=design.site.body,
@@ -77,11 +77,15 @@ class StudyLanders(Landers):
             mean_incidence_deg=np.array(facets),
             spin=out_of_frame(np.array(begin.axes), begin.spin),
         )
+        landers.ground[:] = begin.ground
+        return landers
 
     @property
     def ways_from_aims(self) -> Array:
-        """Ways over the ground from the aim points [m], as if the body were a ball of the radius there."""
-        return ways_from_aims(self.body, self.begin.site, self.position)
+        """Ways over the ground from the aim points [m], as if the body were a ball of the radius there; NaN of landers
+        on the partner."""
+        ways = ways_from_aims(self.body, self.begin.site, self.position)
+        return np.where(self.ground == 0, ways, np.nan)
 
     def ground_met(self, down: Integers, velocity: Array, up: Array, incidence: Array) -> tuple[Array, Array]:
         """As of any landers; where the ground of the study is rough each touchdown has a gradient of its own."""

@@ -21,6 +21,7 @@ from lithobrake.pipeline.runs.landings import touchdowns
 from lithobrake.smallbody.touchdown import Answers, ImpactStates, Touchdown
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
+    ELSEWHERE,
     IMPACT_AZIMUTH,
     IMPACT_INCIDENCE,
     IMPACT_SPEED,
@@ -54,8 +55,9 @@ class LandingRows:
         if number == 0:
             return row | self._ground(impacts, place, row, row[IMPACT_AZIMUTH])
         x, y, turn, *_ = touchdown_uniforms(self.design.study.seed, journey, number)
-        row = row | self._patch(lander, journey, impacts.position[place])
-        azimuth, row = 360.0 * turn, row | self._soil(journey, impacts.position[place])
+        ground = int(impacts.ground[place])
+        row = row | self._patch(lander, journey, impacts.position[place], ground)
+        azimuth, row = 360.0 * turn, row | self._soil(journey, impacts.position[place], ground)
         attitude, axes = impacts.attitude[place], impacts.axes[place]
         if attitude is None:
             attitude = self._any_attitude(journey, number)
@@ -93,11 +95,12 @@ class LandingRows:
         (west, east), (south, north) = region
         return west + x * (east - west), south + y * (north - south)
 
-    def _patch(self, lander: int, journey: int, place: np.ndarray) -> Row:
+    def _patch(self, lander: int, journey: int, place: np.ndarray, ground: int) -> Row:
         """The bed that a lander meets at a place [m], [3], and what it reads of its ground; nothing of one ground."""
         if self.design.study.ground is None:
             return {}
-        bed = self.design.grounds.bed_at(journey, int(self.begin.rows[lander]["bed"]), self.begin.origin[lander], place)
+        first, bodies = self.begin.origin[lander], (int(self.begin.ground[lander]), ground)
+        bed = self.design.grounds.bed_at(journey, int(self.begin.rows[lander]["bed"]), first, place, bodies)
         own = {name: float(values[0]) for name, values in self.design.own_soils(np.array([journey])).items()}
         return own | self.design.grounds.of(bed, own)
 
@@ -105,19 +108,21 @@ class LandingRows:
     def _soils(self) -> Soils:
         return Soils(self.design.site)
 
-    def _soil(self, journey: int, place: np.ndarray) -> Row:
+    def _soil(self, journey: int, place: np.ndarray, ground: int) -> Row:
         """The numbers of the grains that a lander meets at a place [m], [3], by dotted key; none where no region has a
-        soil of its own, and all ground is what the lander met first.
+        soil of its own, and all ground is what the lander met first. Regions are of the body of the site alone.
         """
         if not self.design.study.soil:
             return {}
         own = self.design.own_soils(np.array([journey]))
-        met = self._soils.met(np.array([journey]), own, place[None])
+        met = own if ground else self._soils.met(np.array([journey]), own, place[None])
         return {key: float(values[0]) for key, values in met.items()}
 
-    def soil_column(self, place: np.ndarray) -> dict[str, str]:
+    def soil_column(self, place: np.ndarray, ground: int) -> dict[str, str]:
         """The region of a touchdown at a place [m], [3], as its table has it; nothing where there are no regions."""
-        return dict(zip(SOIL, self._soils.at(place[None]), strict=True)) if self.design.study.soil else {}
+        if not self.design.study.soil:
+            return {}
+        return dict(zip(SOIL, [ELSEWHERE] if ground else self._soils.at(place[None]), strict=True))
 
 
 def answers_of(records: Sequence[Record]) -> Answers:

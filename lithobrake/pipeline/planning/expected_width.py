@@ -103,7 +103,7 @@ def expected_width(
     values, bed = answers_of(design.keys, known, flown_shares(study, folder))
     own = int(np.isfinite(values).sum())
     own = own if own >= FEWEST_ANSWERS and len(np.unique(bed)) > 1 else 0
-    reach = 1.0 if design.descents is None else float(design.descents.touches_down.mean())
+    reach = 1.0 if design.descents is None else design.descents.reach
     law, words = law_of_runs(values, bed) if own else law_before(study, reach)
     missing = _missing(study, soil, values)
     there, to_come = _runs(design, values, bed)

@@ -146,11 +146,15 @@ def draw_bar(axes: Axes, width: float) -> None:
 def track_map(track: JourneyTrack, shown: int | None = None) -> Figure:
     """Draw the impacts of a lander, joined by lines, and its end: in metres about the aim point, and on the body.
 
+    Those on the partner of the body are left out.
+
     shown: up to the impact of this number, without the end; absent: all of it.
     """
-    places = np.array([one.place for one in track.touchdowns])
-    end = np.array([track.end_place]) if track.end_place is not None else np.empty((0, 2))
-    latitude, longitude = np.concatenate([places, end]).T
+    places, end = np.array(track.places_on_body), np.empty((0, 2))
+    if track.end_place is not None and track.end_place[0] != track.partner:
+        end = np.array([track.end_place[1:]])
+    known = np.concatenate([places, end])
+    latitude, longitude = known[np.isfinite(known).all(axis=1)].T
     ground = ground_map.GroundMap(*track.aim, track.radius)
     panel = ground_map.panel_around(ground, [(latitude, longitude)])
     if shown is not None:
@@ -193,7 +197,7 @@ def _draw_track(
             text = axes.annotate(str(number), (x[number], y[number]), (5, 5), textcoords="offset points", fontsize=9)
             text.set(path_effects=TRACK_RIM, zorder=8)
     if len(end):
-        axes.plot(x[-1], y[-1], color=END_COLOURS[track.end], markersize=size + 2, label=track.end.label, **dots)
+        axes.plot(x[-1], y[-1], color=END_COLOURS[track.end], markersize=size + 2, label=track.end_label, **dots)
     if ground.facing(*(np.array([one]) for one in track.aim))[0] > 0.0 and is_close:
         ground_map.mark_site(axes, *(float(one[0]) for one in ground.places(*(np.array([one]) for one in track.aim))))
     axes.plot([], [], linestyle="none", label="aim point", **{**ground_map.SITE_STYLE, "markersize": 12})

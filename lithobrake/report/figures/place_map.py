@@ -55,7 +55,8 @@ class PlaceMap:
     """What a map shows: places and regions by outcome, the aim point [deg], and the radius of the body there [m].
 
     The first regions are filled, of the others the edges are drawn. soils: latitude and longitude [deg] along the edges
-    of regions with a soil of their own, by name.
+    of regions with a soil of their own, by name. has_aim: false of the other body of a binary, whose map is about its
+    longitude 0 instead.
     """
 
     places: Sequence[Places]
@@ -63,6 +64,7 @@ class PlaceMap:
     aim: tuple[float, float]
     radius: float
     soils: Mapping[str, ground_map.Outlines] = field(default_factory=dict)
+    has_aim: bool = True
 
     @property
     def ground(self) -> ground_map.GroundMap:
@@ -103,6 +105,17 @@ def local_figure(shown: PlaceMap) -> Figure:
         scale = draw_scale(figure, many, norm, width, cax=bar, orientation="horizontal")
         scale.ax.xaxis.label.set_fontsize(8)
         scale.outline.set_visible(False)
+    figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.03, 0.01), borderpad=0.0, borderaxespad=0.0)
+    return figure
+
+
+def whole_figure(shown: PlaceMap) -> Figure:
+    """Draw both halves of the body."""
+    handles = _handles(shown)
+    height = 0.5 * WIDTH + ROW * len(handles) + 0.06
+    figure = Figure(figsize=(WIDTH, height))
+    norm = _norm(shown, (shown.ground, shown.ground.opposite), None)
+    _halves(figure, shown, norm, (0.01, 1.0 - 0.5 * WIDTH / height, 0.98, 0.5 * WIDTH / height))
     figure.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.03, 0.01), borderpad=0.0, borderaxespad=0.0)
     return figure
 
@@ -186,14 +199,16 @@ def _draw_places(
 def _halves(figure: Figure, shown: PlaceMap, norm: LogNorm, place: tuple[float, float, float, float]) -> None:
     """Both halves of the body side by side at a place in parts of the figure: left, bottom, width, height."""
     left, bottom, width, height = place
+    middle = "the aim point" if shown.has_aim else "longitude 0"
     for side, (ground, title) in enumerate(
-        ((shown.ground, "the half around the aim point"), (shown.ground.opposite, "the other half"))
+        ((shown.ground, f"the half around {middle}"), (shown.ground.opposite, "the other half"))
     ):
         axes = figure.add_axes((left + 0.5 * width * side, bottom, 0.5 * width, 0.91 * height))
         _draw_half(axes, shown, ground, norm, title)
         if side == 0:
-            ground_map.mark_site(axes, 0.0, 0.0)
             draw_bar(axes, 2.12 * ground.edge)
+        if side == 0 and shown.has_aim:
+            ground_map.mark_site(axes, 0.0, 0.0)
 
 
 def _draw_half(axes: Axes, shown: PlaceMap, ground: ground_map.GroundMap, norm: LogNorm, title: str) -> None:
@@ -239,8 +254,8 @@ def _handles(shown: PlaceMap) -> list[Line2D]:
     if any(shown.soils.values()):
         named = ", ".join(name for name, lines in shown.soils.items() if lines)
         handles.append(Line2D([], [], label=f"edges of soils ({named})", **ground_map.SOIL_STYLE))
-    handles.append(Line2D([], [], linestyle="none", label="aim point", **{**ground_map.SITE_STYLE, "markersize": 11}))
-    return handles
+    aim = Line2D([], [], linestyle="none", label="aim point", **{**ground_map.SITE_STYLE, "markersize": 11})
+    return [*handles, aim] if shown.has_aim else handles
 
 
 def places_by_end(

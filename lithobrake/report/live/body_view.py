@@ -11,7 +11,7 @@ from lithobrake.report.figures.body_figures import BARE, COLOURS, colour_ends, f
 from lithobrake.report.figures.style import INK, LANDER, QUIET
 from lithobrake.report.live.landing_view import geometry, orbit, section, still
 from lithobrake.results.page_data import PageData, PageJourneys, PageSamples
-from lithobrake.statements.labels import END_WORDS
+from lithobrake.statements.labels import end_words
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES
 from lithobrake.vocabulary.number_words import number
@@ -23,8 +23,6 @@ MARK = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0,
 MARK_FACES = np.array([
     (0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5),
 ])  # fmt: skip
-# How a flight or journey ended, in words of a legend.
-LEGEND_WORDS: dict[str, str] = {FlightStatus.FLYING: "still flying", **END_WORDS}
 
 
 def body_views(data: PageData) -> list[LiveSection]:
@@ -50,14 +48,14 @@ def _impact_view(data: PageData, samples: PageSamples) -> list[LiveSection]:
         arrays |= _lines(*data.paths)
         words += f" Lines: the paths of the first {len(data.paths[1])} flights, relative to the rotating body."
     title = "Where the lander comes down, in three dimensions"
-    return [section("body-3d", title, _with_marker(words, facts), arrays, facts, _legend(data.paths[1]))]
+    return [section("body-3d", title, _with_marker(words, facts), arrays, facts, _legend(data, data.paths[1]))]
 
 
 def _end_view(data: PageData, journeys: PageJourneys) -> list[LiveSection]:
     """A pin at the place of each lander on the ground, and the flights of the first journeys."""
     table, (ways, ended) = journeys.table, data.paths
     place = np.column_stack([table[f"position_{axis}"] for axis in "xyz"])
-    on_ground = np.isfinite(place).all(axis=1)
+    on_ground = np.isfinite(place).all(axis=1) & ~journeys.is_on_partner
     if not (on_ground.any() or len(ways)):
         return []
     arrays, facts = _body(data, np.broadcast_to(np.array(BARE), (len(data.body_faces), 3)))
@@ -72,13 +70,14 @@ def _end_view(data: PageData, journeys: PageJourneys) -> list[LiveSection]:
         lines = _lines(ways, ended)
         arrays |= {name: np.concatenate([pins[name], lines[name]]) for name in pins}
         words += " Lines: the paths of the first journeys, relative to the rotating body."
-    title, legend = "Where the landers rest, in three dimensions", _legend([*end.tolist(), *ended])
+    title, legend = "Where the landers rest, in three dimensions", _legend(data, [*end.tolist(), *ended])
     return [section("body-3d", title, _with_marker(words, facts), arrays, facts, legend)]
 
 
-def _legend(ended: Iterable[str]) -> dict[str, str]:
-    """The colour of each way to end, by its words."""
-    return {LEGEND_WORDS.get(one, one): OUTCOME_COLOURS[one] for one in dict.fromkeys(ended)}
+def _legend(data: PageData, ended: Iterable[str]) -> dict[str, str]:
+    """The colour of each way for a flight or journey to end, by its words."""
+    words = {FlightStatus.FLYING.value: "still flying", **end_words(data.results.site)}
+    return {words.get(one, one): OUTCOME_COLOURS[one] for one in dict.fromkeys(ended)}
 
 
 def _with_marker(words: str, facts: Mapping[str, Any]) -> str:

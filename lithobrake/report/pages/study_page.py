@@ -18,6 +18,7 @@ from lithobrake.report.figures.place_map import (
     outcomes_figure,
     places_by_end,
     rest_figure,
+    whole_figure,
 )
 from lithobrake.report.figures.run_figures import variance_figure
 from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
@@ -39,7 +40,7 @@ from lithobrake.results.page_data import PageData, PageJourneys
 from lithobrake.statements import captions, grounds
 from lithobrake.statements import journeys as words
 from lithobrake.statements.answers import page_answer, page_details, page_tiles, page_warnings
-from lithobrake.statements.labels import END_WORDS, GROUND_WORDS
+from lithobrake.statements.labels import GROUND_WORDS, end_words, partner_words
 from lithobrake.statements.limits import options_caption, rare_caption
 from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
@@ -103,10 +104,15 @@ def _to_rest(data: PageData, journeys: PageJourneys) -> list[PageSection]:
         ),
         Plot("attitude", "Side down and tilt", words.attitude(rest), lambda: _draw_attitude(journeys)),
     ]
+    if journeys.is_on_partner.any():
+        there = partner_words(results.site)
+        where.append(
+            Plot("partner_map", f"On {there}", words.partner_map(results), lambda: _draw_partner(data, journeys))
+        )
     spreads = [time_spread(journeys), distance_spread(journeys)]
     when = [
         Plot("times", "Time to rest and distance", words.times(rest), lambda: spreads_figure(spreads)),
-        Plot("counts", "Touchdowns and contacts", words.counts(journeys), lambda: _draw_counts(journeys)),
+        Plot("counts", "Touchdowns and contacts", words.counts(journeys), lambda: _draw_counts(data, journeys)),
     ]
     title = "Sources of variance of outcome, time and distance"
     why = [Plot("end_variance", title, words.end_variance(results), lambda: _draw_ends(data)), variance_plot(data)]
@@ -162,19 +168,29 @@ def _appendix(data: PageData) -> PageSection:
 
 def end_map(data: PageData, journeys: PageJourneys) -> PlaceMap:
     """Where the landers end, with the regions of those at rest and of the first impacts."""
-    table, delivery = journeys.table, data.results.delivery
+    delivery = data.results.delivery
     regions = [
         Regions("those at rest", AT_REST, journeys.rest.regions),
         Regions("the first impacts", FATE_COLOURS[FlightStatus.IMPACT], () if delivery is None else delivery.regions),
     ]
-    places = places_by_end(END_WORDS, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
+    names, table = end_words(data.results.site), journeys.elsewhere
+    places = places_by_end(names, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
     soils = {name: one.outlines for name, one in data.results.soils.items()}
     return PlaceMap(places, regions, *aim_point(data), soils)
 
 
+def _draw_partner(data: PageData, journeys: PageJourneys) -> "Figure":
+    """Where landers end on the other body of a binary."""
+    names, table = end_words(data.results.site), journeys.table.where(journeys.is_on_partner)
+    places = places_by_end(names, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
+    radius = float(np.linalg.norm([table[f"position_{axis}"] for axis in "xyz"], axis=0).mean())
+    return whole_figure(PlaceMap(places, [], (0.0, 0.0), radius, has_aim=False))
+
+
 def end_shares(data: PageData) -> list[ShareBar]:
     """How the journeys end, as bars have it."""
-    return [ShareBar(END_WORDS[name], one.share, END_COLOURS[name]) for name, one in data.results.ends.items()]
+    names = end_words(data.results.site)
+    return [ShareBar(names[name], one.share, END_COLOURS[name]) for name, one in data.results.ends.items()]
 
 
 def _draw_ends(data: PageData) -> "Figure":
@@ -222,10 +238,10 @@ def _draw_sizes(data: PageData) -> "Figure":
     return ground_figure(results.ground_curve, ranges, unit, factor)
 
 
-def _draw_counts(journeys: PageJourneys) -> "Figure":
+def _draw_counts(data: PageData, journeys: PageJourneys) -> "Figure":
     table = journeys.table
     counts = {"touchdowns": table["touchdowns"], "contacts with the ground": table["contacts"]}
-    return counts_figure(counts, table["end"], END_WORDS)
+    return counts_figure(counts, table["end"], end_words(data.results.site))
 
 
 def _draw_attitude(journeys: PageJourneys) -> "Figure | None":
@@ -235,13 +251,13 @@ def _draw_attitude(journeys: PageJourneys) -> "Figure | None":
 
 def _draw_ground(data: PageData) -> "Figure":
     """Where landers rest on each other ground, and how they end there."""
-    grounds, maps = data.results.hard_ground, []
+    grounds, maps, names = data.results.hard_ground, [], end_words(data.results.site)
     # The same ends on all sides, so that rows and colours match.
-    met = [key for key in END_WORDS if any(key in one.ends and one.ends[key].count for one in grounds.values())]
+    met = [key for key in names if any(key in one.ends and one.ends[key].count for one in grounds.values())]
     # Two maps have room side by side.
     for ground in [one for one in GROUND_MAPS if one in grounds][:2]:
         found, (latitude, longitude) = grounds[ground], data.hard_ground[ground]
-        shares = [share_bar(found.ends[key], END_WORDS[key], END_COLOURS[key], data.digits) for key in met]
+        shares = [share_bar(found.ends[key], names[key], END_COLOURS[key], data.digits) for key in met]
         places, regions = (
             Places("at rest", AT_REST, latitude, longitude),
             Regions("those at rest", AT_REST, found.regions),

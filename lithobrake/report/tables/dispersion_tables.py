@@ -10,7 +10,15 @@ from lithobrake.results.run_results import CountedShare
 from lithobrake.results.study_files import json_values
 from lithobrake.statements import notes
 from lithobrake.statements.ends import MISSING_SAMPLES
-from lithobrake.statements.labels import END_WORDS, FAILED, GROUND_WORDS, OUTCOME_WORDS, area, bracket, two_digits
+from lithobrake.statements.labels import (
+    FAILED,
+    GROUND_WORDS,
+    OUTCOME_WORDS,
+    area,
+    bracket,
+    end_words,
+    two_digits,
+)
 from lithobrake.vocabulary.number_words import QUANTILE_WORDS, at_level, number, percent, time_limit, with_interval
 from lithobrake.vocabulary.outcomes import RETURNS, FlightStatus
 
@@ -136,7 +144,7 @@ def ground_ends(data: PageData) -> PageTable:
     columns = ["after all touchdowns", *(GROUND_WORDS[ground] for ground in found)]
     rows = [
         [words, *(_share(table.ends[key], data.digits) for table in found.values())]
-        for key, words in END_WORDS.items()
+        for key, words in end_words(data.results.site).items()
         if any(key in table.ends and table.ends[key].count for table in found.values())
     ]
     if any(table.unknown for table in found.values()):

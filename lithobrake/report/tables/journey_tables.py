@@ -6,7 +6,7 @@ from lithobrake.results.page_data import PageData, PageJourneys
 from lithobrake.statements import notes
 from lithobrake.statements.grounds import sizes
 from lithobrake.statements.journeys import sides_down, time_unit
-from lithobrake.statements.labels import END_WORDS, quantile
+from lithobrake.statements.labels import end_words, quantile
 from lithobrake.vocabulary.constants import MINUTE
 from lithobrake.vocabulary.number_words import LEVEL, at_level, number, percent, with_interval
 from lithobrake.vocabulary.quantities import SKY_WORDS
@@ -122,9 +122,9 @@ def ends_table(data: PageData, journeys: PageJourneys) -> PageTable:
     by_emulator = emulated.ends if emulated else {}
     columns += ["by the emulator"] if by_emulator else []
     ended, touchdowns = journeys.table["end"], journeys.table["touchdowns"]
-    rows = []
+    rows, words = [], end_words(data.results.site)
     for name, one in data.results.ends.items():
         each = number(float(touchdowns[ended == name].mean()), 2) if one.count else ""
         beside = [with_interval(by_emulator[name].share)] if by_emulator else []
-        rows.append([END_WORDS[name], str(one.count), with_interval(one.share), each, *beside])
+        rows.append([words[name], str(one.count), with_interval(one.share), each, *beside])
     return PageTable("How the journeys ended", columns, rows, notes.ends(data.results), frozenset(columns[1:]))

@@ -203,7 +203,7 @@ def test_each_touchdown_has_a_line_and_the_end_a_sentence(followed: tuple[OneJou
         assert 0.0 < np.linalg.norm(there - here) < on_bed + fastest * (another["begin_s"] - one["end_s"])
     assert track.end == JourneyEnd.AT_REST
     assert lines[-1][4] == "at rest"
-    assert f"in {len(lines)} touchdowns, at latitude {track.end_place[0]:.3f}" in track.end_words
+    assert f"in {len(lines)} touchdowns, at latitude {track.end_place[1]:.3f}" in track.end_words
     assert re.search(r"side [+-][xyz] is down, tilted by [\d.]+ deg\.$", track.end_words)
 
 

@@ -17,13 +17,13 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, bed_setting, pour_seed, touchdown_keys
-from lithobrake.pipeline.design.descents import Descents, spread, spread_root
+from lithobrake.pipeline.design.descents import Descents, descents_in_words, spread, spread_root
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.pipeline.design.random_inputs import draw
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import Site
-from lithobrake.smallbody import fly, tumble
+from lithobrake.smallbody import didymos, fly, tumble
 from lithobrake.smallbody.body import GRAVITATIONAL_CONSTANT
 from lithobrake.study import Study, StudyError, check_tables, read_study
 from lithobrake.study.delivery_sections import ReleaseSection
@@ -324,6 +324,32 @@ def test_a_state_within_the_partner_is_refused_with_its_line(tmp_path: Path) -> 
     path = write_table(tmp_path / "states.csv", states, TITLES)
     with pytest.raises(StudyError, match=r"states\.csv, line 4 lies 30\d m below the surface of didymos; allowed"):
         _ = DrawnDesign(study(delivery={"states": path}, site={"partner": True})).descents
+
+
+def test_a_lander_that_falls_on_the_partner_touches_down_there(tmp_path: Path) -> None:
+    """From rest between both bodies, on the side of Didymos; gravity and spin of the touchdown are those there."""
+    states = some_states()
+    states[3, 1:] = [600.0, 20.0, 150.0, 0.0, 0.0, 0.0]
+    path = write_table(tmp_path / "states.csv", states, TITLES)
+    design = DrawnDesign(study(delivery={"states": path}, site={"partner": True}))
+    descents, body = design.descents, didymos(partner=False)
+    assert descents.ground.tolist() == [0, 0, 0, 1, 0, 0, 0, 0]
+    assert descents.touches_down.all()
+    assert "8 of 8 landers reach the ground" in descents_in_words(descents)
+    assert ", 1 of them on Didymos" in descents_in_words(descents)
+    place, axes = descents.position[3], descents.axes[3]
+    height, facet = body.shape.nearest(place)
+    assert abs(height) < 1e-6
+    assert axes[2] == pytest.approx(body.shape.normals[facet], abs=1e-12)
+    row = design.rows[3]
+    felt = body.effective_acceleration(place)
+    # The tide of Dimorphos, and the ground of the bed that is no steeper than its soil lies.
+    sign = -1.0 if axes[2] @ felt > 0.0 else 1.0
+    assert row["surface.gravity"] == pytest.approx(sign * np.linalg.norm(felt), rel=1e-3)
+    turning = np.linalg.norm([row[f"surface.rotation_{axis}"] for axis in "xyz"])
+    assert turning == pytest.approx(2.0 * math.pi / body.spin_period, rel=1e-12)
+    assert row["impact.speed"] == pytest.approx(descents.flights.impact_speed[3])
+    assert 0.1 < row["impact.speed"] < 0.6
 
 
 def test_a_lander_too_fast_for_any_contact_is_refused() -> None:

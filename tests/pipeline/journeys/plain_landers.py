@@ -51,7 +51,8 @@ def thrown_landers(
     own = {"mass": body.mass if mass is None else mass, "spin_period": body.spin_period}
     site = {name: np.array(np.broadcast_to(one, count), dtype=float) for name, one in own.items()}
     clock = np.array(np.broadcast_to(time, count), dtype=float)
-    begin = Arrivals(np.arange(count), [{}] * count, site, place, axes, clock, np.zeros(count, dtype=int))
+    whole = (np.zeros(count, dtype=int) for _ in range(2))
+    begin = Arrivals(np.arange(count), [{}] * count, site, place, axes, clock, *whole)
     study: Any = SimpleNamespace(
         seed=0,
         journey=SimpleNamespace(duration=duration),

@@ -149,7 +149,9 @@ def arrivals(friction: list[float], hull: float = 0.4) -> Arrivals:
     """Landers whose grains have these frictions."""
     rows, count = [{"grain.friction": one, "lander.friction": hull} for one in friction], len(friction)
     nothing = np.zeros(count)
-    return Arrivals(np.arange(count), rows, {}, np.zeros((count, 3)), np.zeros((count, 3, 3)), nothing, nothing)
+    return Arrivals(
+        np.arange(count), rows, {}, np.zeros((count, 3)), np.zeros((count, 3, 3)), nothing, nothing, nothing
+    )
 
 
 NOBODY: Any = None
@@ -189,7 +191,7 @@ def states(speed: list[float], outward: float = -1e-5, spin: float = 0.0) -> Imp
     angle, axes = np.full(count, 60.0), np.tile(np.eye(3), (count, 1, 1))
     spins, pull = np.tile([0.0, spin, 0.0], (count, 1)), np.tile([0.0, 0.0, outward], (count, 1))
     return ImpactStates(
-        np.zeros(count, dtype=np.int64), number, np.zeros((count, 3)), axes, np.array(speed), angle, angle, spins,
+        number, number, number, np.zeros((count, 3)), axes, np.array(speed), angle, angle, spins,
         [None] * count, pull, np.zeros((count, 3)), nothing, nothing, nothing, nothing, nothing,
     )  # fmt: skip
 

@@ -63,8 +63,8 @@ def test_landers_rest_on_hard_ground_and_their_shares_have_the_error_of_their_nu
     assert (rests["slid_time_s"] <= rests["time_s"]).all()
     lines = (journeys.folder / "rest.csv").read_text().splitlines()
     assert lines[0] == (
-        "ground,journey,end,time_s,latitude_deg,longitude_deg,distance [m],touchdowns,path_length [m],slid_length [m],"
-        "slid_time_s"
+        "ground,journey,end,body,time_s,latitude_deg,longitude_deg,distance [m],touchdowns,path_length [m],"
+        "slid_length [m],slid_time_s"
     )
 
 
