@@ -299,9 +299,9 @@ def replan(
     put(flight.force, body, row(bodies.force, body))
     put(flight.torque, body, row(bodies.torque, body))
     flight.planned[body] = now
-    # What touches nothing is not pushed, and what begins to touch is planned anew.
+    # What touches nothing and has no joint is not pushed, and what begins to touch is planned anew.
     flight.slack[body], flight.surge[body] = 0.0, 0.0
-    if touches(pairs, flight, plans, body):
+    if flight.joints[body] > 0 or touches(pairs, flight, plans, body):
         along = acceleration_of(bodies, flight, body, rules)
         surge = dot(along, along) ** 0.5 + turning_rate(bodies, flight, body, rules)
         flight.slack[body] = NOTED_CHANGE * surface_speed(bodies, flight, body)

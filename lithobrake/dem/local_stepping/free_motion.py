@@ -41,6 +41,8 @@ class Flight(NamedTuple):
     turning: Floats  # [body_count], 1/(kg m2), largest inverse moment of inertia
     slenderness: Floats  # [body_count], largest over smallest moment of inertia
     mass: Floats  # [part_count], kg, smallest that a contact meets
+    leader: Integers  # [body_count], body at the root of all that it is joined to, see joints.py; itself: not joined
+    joints: Integers  # [body_count], joints that it is part of
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
     stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
     told: Floats  # [body_count], s, until when its spin knows how the frame turns

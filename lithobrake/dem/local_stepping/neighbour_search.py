@@ -205,7 +205,7 @@ def list_near(
 
     Writes to system and schedule.
     """
-    bodies, planes, cells = system.bodies, system.planes, schedule.cells
+    bodies, planes, cells, flight = system.bodies, system.planes, schedule.cells, schedule.flight
     has_room = True
     for at in range(-len(planes.offset), found):
         if at < 0:
@@ -213,7 +213,8 @@ def list_near(
                 has_room &= list_if_near(system, schedule, (body, at), (part, at), now, rules)
             continue
         other = cells.found[at]
-        if other == body:
+        # What is joined does not touch; a body is its own leader, or shares it with all that it is joined to.
+        if flight.leader[other] == flight.leader[body]:
             continue
         for its in range(bodies.part_start[other], bodies.part_start[other + 1]):
             has_room &= list_if_near(system, schedule, (body, other), (part, its), now, rules)
