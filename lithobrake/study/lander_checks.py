@@ -146,6 +146,9 @@ def part_problems(lander: LanderSection) -> Iterator[str]:
             both = "both are" if part.mass is not None else "neither is"
             yield f"{path} takes mass or density, and {both} given; keep one of the two"
         yield from quaternion_problems(f"{path}.orientation", part.orientation)
+        if part.hinge is not None and (part.hinge.frequency is None) == (part.hinge.stiffness is None):
+            both = "both are" if part.hinge.stiffness is not None else "neither is"
+            yield f"{path}.hinge takes frequency or stiffness, and {both} given; keep one of the two"
     if lander.part and isinstance(lander.diameter, Uncertain):
         yield (
             "lander.diameter is uncertain, and the lander has parts, which stand at fixed places; allowed: one number; "
@@ -171,6 +174,26 @@ def mass_problems(lander: LanderSection) -> Iterator[str]:
             f"lander.mass is {least:.4g} kg at its least, and lander.part has {parts:.4g} kg; allowed: more than that, "
             "as it is the mass of all and the main shape has the rest; raise it, or make the parts lighter"
         )
+
+
+def hinge_problems(lander: LanderSection, radius: float, stepping: str) -> Iterator[str]:
+    """Hinges that are out of reach or that no engine takes, and a main body without the inertia of one.
+
+    radius: of the lander [m]. Raises ValueError for a mesh that is refused.
+    """
+    hinges = {name: part.hinge for name, part in lander.part.items() if part.hinge is not None}
+    if hinges and stepping != "local":
+        yield (
+            f'contact.stepping is "{stepping}" with lander.part.{next(iter(hinges))}.hinge; allowed with hinges: '
+            '"local"; leave it out'
+        )
+    for name, hinge in hinges.items():
+        away = math.hypot(*hinge.point)
+        if away > 2.0 * radius:
+            yield (
+                f"lander.part.{name}.hinge.point is {show(hinge.point)} m, {away:.3g} m from the origin of the lander; "
+                f"allowed: at most {2.0 * radius:.3g} m, twice the lander's reach; give it in the axes of the lander"
+            )
 
 
 def inertia_problems(lander: LanderSection) -> Iterator[str]:

@@ -16,6 +16,8 @@ from lithobrake.vocabulary.field_errors import FieldError, field_number
 PIN_RATIO, SMALLEST_PIN_RATIO = 10.0, 2.0
 # c dt + (w dt)^2 / 4 of a joint; 1 is the limit of stability.
 STABLE_FRACTION = 0.5
+# Looks at a joint in half of its shortest period, over steps in a contact, which is such a half; and the fewest.
+LOOKS_PER_STEP, FEWEST_LOOKS = 0.2, 5.0
 LARGEST_LIMIT = 0.5 * math.pi
 WHO = ("first", "second")
 
@@ -96,7 +98,7 @@ def rotation_of(quaternion: Floats) -> Floats:
 
 
 def joint_step(joint: Joint, first: RigidBody, second: RigidBody, law: JointLaw, steps: float) -> float:
-    """Return the interval [s] between looks at a joint: so many in the shortest of its periods, or what is stable."""
+    """Return the interval [s] between looks at a joint where contacts take so many steps; it is stable by itself."""
     to_first = rotation_of(joint.turn)
     # Small motions of both, in the frame of the second: three ways and three angles of each.
     masses = np.zeros((12, 12))
@@ -110,7 +112,7 @@ def joint_step(joint: Joint, first: RigidBody, second: RigidBody, law: JointLaw,
     dashpot = law.pin_dashpot * stretch.T @ stretch + bend.T @ law.hinge_dashpot @ bend
     square, damping = (float(np.linalg.eigvals(np.linalg.solve(masses, m)).real.max()) for m in (stiffness, dashpot))
     stable = 2.0 * STABLE_FRACTION / (damping + math.sqrt(damping**2 + STABLE_FRACTION * square))
-    return min(2.0 * math.pi / (math.sqrt(square) * steps), stable)
+    return min(math.pi / (math.sqrt(square) * max(FEWEST_LOOKS, LOOKS_PER_STEP * steps)), stable)
 
 
 def leaders_of(body_count: int, joints: list[Joint]) -> Integers:

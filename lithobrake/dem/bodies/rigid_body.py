@@ -169,6 +169,21 @@ def sum_of_parts(parts: Sequence[tuple[Shape, float]]) -> Assembly:
     return Assembly(mass, centre, inertia)
 
 
+def rest_of(whole: Assembly, taken: Sequence[Assembly]) -> Assembly:
+    """Return what is left of a body when others are taken off it, all given in one frame.
+
+    Its inertia need not be one that a body has.
+    """
+    mass = whole.mass - sum(one.mass for one in taken)
+    moment = whole.mass * whole.centre - sum((one.mass * one.centre for one in taken), np.zeros(3))
+    centre = moment / mass
+    inertia = np.zeros((3, 3))
+    for sign, one in ((1.0, whole), *((-1.0, one) for one in taken)):
+        way = one.centre - centre
+        inertia += sign * (one.inertia + one.mass * (way @ way * np.eye(3) - np.outer(way, way)))
+    return Assembly(mass, centre, 0.5 * (inertia + inertia.T))
+
+
 def uniform_bodies(shapes: Sequence[Shape], material: Material) -> list[RigidBody]:
     """Return bodies of one material, as new_body makes each."""
     volume = np.array([shape.volume for shape in shapes])
