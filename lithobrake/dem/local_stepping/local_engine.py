@@ -56,7 +56,9 @@ def flight_of(engine: Engine, bodies: list[RigidBody], joints: list[Joint], time
         time=np.full(n, time), planned=np.full(n, time), velocity=never, momentum=np.zeros((n, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
         touching=joined.copy(), turning=moments[:, -1].copy(), slenderness=moments[:, -1] / moments[:, 0],
-        mass=mass, leader=leaders_of(n, joints), joints=joined, head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
+        mass=mass, leader=leaders_of(n, joints),
+        mobility=np.array([body.surface_mobility if joined[k] else 0.0 for k, body in enumerate(bodies)]),
+        joints=joined, head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
         resolved_speed=np.zeros(1), told=np.full(n, time),
     )  # fmt: skip
 

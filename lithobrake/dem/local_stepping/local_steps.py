@@ -51,6 +51,8 @@ NO_ROOM = 3
 STEPS_NEAR, NARROWEST = 10.0, 1e-3
 # Largest c dt + (w dt)^2 / 4 of one contact, see stability.py: several may push one body.
 STABLE_PART = 0.6
+# Looks at a joint after which its bodies are planned anew: about a period of the hinge.
+PLANNED_LOOKS = 200.0
 
 
 @kernel
@@ -247,7 +249,9 @@ def meet_joint(joint: int, system: System, schedule: Schedule, joints: Joints, n
     joints.last[joint], joints.due[joint] = now, now + joints.interval[joint]
     put_on(agenda, joint_item(bodies, pairs, joint), joints.due[joint])
     for member in members:
-        if has_changed(bodies, flight, member, now, rules):
+        # What swings less than it did is planned for less, after a while.
+        outdated = now - flight.planned[member] > PLANNED_LOOKS * joints.interval[joint]
+        if outdated or has_changed(bodies, flight, member, now, rules):
             replan(bodies, pairs, flight, plans, agenda, member, now, rules)
 
 
