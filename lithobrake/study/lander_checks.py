@@ -181,6 +181,8 @@ def hinge_problems(lander: LanderSection, radius: float, stepping: str) -> Itera
 
     radius: of the lander [m]. Raises ValueError for a mesh that is refused.
     """
+    if any(part.hinge is not None for part in lander.part.values()):
+        yield from _main_body_problems(lander)
     hinges = {name: part.hinge for name, part in lander.part.items() if part.hinge is not None}
     if hinges and stepping != "local":
         yield (
@@ -194,6 +196,36 @@ def hinge_problems(lander: LanderSection, radius: float, stepping: str) -> Itera
                 f"lander.part.{name}.hinge.point is {show(hinge.point)} m, {away:.3g} m from the origin of the lander; "
                 f"allowed: at most {2.0 * radius:.3g} m, twice the lander's reach; give it in the axes of the lander"
             )
+
+
+def _main_body_problems(lander: LanderSection) -> Iterator[str]:
+    """Mass, centre of mass and inertia from which parts on hinges cannot be taken, at the ends of what is uncertain."""
+    if lander.inertia is None:
+        return
+    import numpy as np
+
+    from lithobrake.dem import Assembly, ConvexHull, Sphere, rest_of
+
+    taken = []
+    for part in lander.part.values():
+        if part.hinge is not None:
+            one, mass = part_solid(part), part_mass(part)
+            shape = Sphere(one.radius, one.centroid) if one.radius > 0.0 else ConvexHull(np.array(one.points))
+            taken.append(Assembly(mass, shape.centroid, shape.inertia_per_density * (mass / shape.volume)))
+    tensor = np.diag(lander.inertia[:3])
+    for (i, j), element in zip(((0, 1), (0, 2), (1, 2)), lander.inertia[3:], strict=False):
+        tensor[i, j] = tensor[j, i] = element
+    own, parts = solid(lander), [part_solid(part) for part in lander.part.values()]
+    for mass, centre in product(usual_reach(lander.mass), _centres_of_mass(lander, own, parts)):
+        moments = np.linalg.eigvalsh(rest_of(Assembly(mass, np.array(centre), tensor), taken).inertia)
+        if moments[0] <= 0.0 or moments[2] > (moments[0] + moments[1]) * (1.0 + ROUNDING):
+            shown, left = (", ".join(f"{one:.4g}" for one in some) for some in (lander.inertia, moments))
+            yield (
+                f"lander.inertia is [{shown}] kg m2 with parts on hinges, which leave the main body moments of {left} "
+                f"kg m2 at {mass:.4g} kg; allowed: above 0, each at most the sum of the other two; raise it, or make "
+                "these parts lighter"
+            )
+            return
 
 
 def inertia_problems(lander: LanderSection) -> Iterator[str]:

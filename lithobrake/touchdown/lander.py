@@ -96,7 +96,7 @@ class Lander:
         except FieldError as error:
             raise FieldError(
                 "Lander.inertia", self.body.inertia.tolist(),
-                f"of all leaves one that a body has when the {len(taken)} parts on hinges are taken off, and not "
+                f"is that of a body from which the {len(taken)} parts on hinges can be taken, and leaves not "
                 f"{rest.inertia.tolist()} kg m2",
                 "raise it, or make these parts lighter", "kg m2",
             ) from error  # fmt: skip

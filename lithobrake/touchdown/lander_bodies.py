@@ -17,9 +17,10 @@ def add_lander(
     turn = np.array(orientation, dtype=np.float64)
     rotation = rotation_matrices((turn / np.linalg.norm(turn))[None])[0] if lander.hinged else np.eye(3)
 
-    def motion_at(way: Floats) -> tuple[Floats, Floats]:
+    def motion_at(way: Floats) -> tuple[Vector, Vector]:
         arm = rotation @ way
-        return place + arm, velocity + np.cross(spin, arm)
+        (x, y, z), (u, v, w) = (place + arm).tolist(), (velocity + np.cross(spin, arm)).tolist()
+        return (x, y, z), (u, v, w)
 
     if not lander.hinged:
         return world.add_body(

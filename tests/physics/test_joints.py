@@ -1,4 +1,4 @@
-"""Joined bodies against closed forms: a clamped beam, the effective mass of its tip, conservation laws, a rigid body."""
+"""Joined bodies against closed forms: a clamped beam, the effective mass of its tip, conservation laws."""
 
 import math
 import re
@@ -101,7 +101,8 @@ def tip_mass(material: Material, *, is_rigid: bool = False, **joint: Any) -> flo
     lander, ball, speed, short_of_tip = 12.0, 0.05, 0.05, 0.002
     if is_rigid:
         world = World(time_step=1e-3)
-        shape = ConvexHull(Box((LINK.length, THICKNESS, THICKNESS)).vertices + np.array([HINGE + 0.5 * LINK.length, 0, 0]))
+        middle = np.array([HINGE + 0.5 * LINK.length, 0.0, 0.0])
+        shape = ConvexHull(Box((LINK.length, THICKNESS, THICKNESS)).vertices + middle)
         density = LINK.mass / shape.volume
         part = Part(shape, Material(**{**SMOOTH_NUMBERS, "density": density, "young_modulus": material.young_modulus}))
         world.add_body(Box((EDGE,) * 3), material, (0.0, 0.0, 0.0), mass=lander, parts=(part,))

@@ -154,7 +154,9 @@ def new_joint(
 def checked_body(body: int, numbers: range, name: str) -> int:
     """Return the number of a body. Raises ValueError for one that is not there."""
     if isinstance(body, bool) or not isinstance(body, int | np.integer) or body not in numbers:
-        raise FieldError(f"World.join {name}", body, f"is the number of a body, 0 to {len(numbers) - 1}", "add it first")
+        raise FieldError(
+            f"World.join {name}", body, f"is the number of a body, 0 to {len(numbers) - 1}", "add it first"
+        )
     return body
 
 

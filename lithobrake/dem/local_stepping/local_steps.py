@@ -238,7 +238,7 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
 
 
 @kernel
-def meet_joint(joint: int, system: System, schedule: Schedule, joints: Joints, now: float, rules: Rules) -> None:
+def meet_joint(system: System, schedule: Schedule, joints: Joints, joint: int, now: float, rules: Rules) -> None:
     """Look at a joint that is due and plan when to look again. Writes to system, schedule and joints."""
     bodies, pairs = system.bodies, system.pairs
     flight, plans, agenda, _ = schedule
@@ -322,7 +322,7 @@ def advance_locally(
             continue
         pair = item - n
         if pair >= len(pairs.first):
-            meet_joint(pair - len(pairs.first), system, schedule, joints, now, rules)
+            meet_joint(system, schedule, joints, pair - len(pairs.first), now, rules)
             continue
         if not meet(pair, system, schedule, now, rules):
             return NO_ROOM
