@@ -30,7 +30,7 @@ class CentreSection(Section):
 
 
 class HingeSection(Section):
-    """An elastic hinge on which a part hangs on the main shape, or that stands for the bending of a boom."""
+    """An elastic hinge of a part, which may stand for the bending of a boom."""
 
     point: Annotated[tuple[float, float, float], Numbers("m", count=3)] = Field(examples=["[0.56, 0.0, 0.0]"])
     """Position of the hinge."""
