@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compilation.compiled import kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
 from lithobrake.dem.bodies.orientation import turn_by
 from lithobrake.dem.bodies.turning_frame import (
@@ -68,6 +68,13 @@ def spin_of(bodies: Bodies, body: int) -> Vector:
     return times(bodies.inverse_inertia, body, row(bodies.angular_momentum, body))
 
 
+@large_kernel
+def spin_size(bodies: Bodies, body: int) -> float:
+    """Return the size of a body's angular velocity [rad/s]."""
+    spin = spin_of(bodies, body)
+    return dot(spin, spin) ** 0.5
+
+
 @kernel
 def spin_bound(bodies: Bodies, flight: Flight, body: int) -> float:
     """Return a bound on the size of a body's angular velocity [rad/s], however it tumbles; on a joint the one at hand,
@@ -75,12 +82,11 @@ def spin_bound(bodies: Bodies, flight: Flight, body: int) -> float:
     """
     momentum = row(bodies.angular_momentum, body)
     if flight.joints[body] > 0:
-        spin = spin_of(bodies, body)
-        return dot(spin, spin) ** 0.5
+        return spin_size(bodies, body)
     return flight.turning[body] * dot(momentum, momentum) ** 0.5
 
 
-@kernel
+@large_kernel
 def swept(bodies: Bodies, flight: Flight, body: int, momentum: Vector) -> float:
     """Return a bound on the speed [m/s] that an angular momentum gives the surface of a body on a joint.
 

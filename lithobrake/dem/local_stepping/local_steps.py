@@ -237,7 +237,7 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
     return True
 
 
-@kernel
+@large_kernel
 def meet_joint(system: System, schedule: Schedule, joints: Joints, joint: int, now: float, rules: Rules) -> None:
     """Look at a joint that is due and plan when to look again. Writes to system, schedule and joints."""
     bodies, pairs = system.bodies, system.pairs
