@@ -1,4 +1,5 @@
-"""What parts cost: CPU time of the same landings of a box alone, with a second main part, and with four booms.
+"""What parts cost: CPU time of the same landings of a box alone, with a second main part, and with four booms, fixed
+and on hinges.
 
     python benchmarks/lander_parts.py --bed BED_FILE --landings 3 --out FILE.csv --picture FILE.png
 
@@ -21,7 +22,19 @@ from harness import command_line
 
 from lithobrake.dem import Box, ConvexHull, Material, Part
 from lithobrake.results import MovingBodies
-from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
+from lithobrake.touchdown import (
+    Bed,
+    BedRecipe,
+    ContactModel,
+    GrainSizes,
+    Hinge,
+    HingedPart,
+    Lander,
+    Landing,
+    beam_link,
+    land,
+    pour_bed,
+)
 
 ROCK = Material(young_modulus=6.3e5, poisson_ratio=0.25, restitution=0.6, friction=0.65, density=3300.0)
 SKIN = replace(ROCK, friction=0.45, density=1450.0)
@@ -41,6 +54,26 @@ BOOMS = tuple(
     part((1.5, 0.01, 0.01) if along else (0.01, 1.5, 0.01), (along, across, 0.0), 0.05)
     for along, across in ((0.933, 0.0), (-0.933, 0.0), (0.0, 0.863), (0.0, -0.863))
 )
+BOOM, BOOM_MASS, FREQUENCY, DAMPING = 1.5, 0.05, 6.7, 0.01  # m, kg, Hz
+
+
+def hinged_boom(along: int, side: float) -> tuple[Part, Part]:
+    """The link of a boom on its hinge, along an axis, and the fixed rest at its root."""
+    link, surface = beam_link(BOOM, BOOM_MASS, FREQUENCY), 0.5 * BOX[along]
+    found = []
+    for length, begin, mass in (
+        (link.length, BOOM - link.length, link.mass), (BOOM - link.length, 0.0, BOOM_MASS - link.mass),
+    ):  # fmt: skip
+        edges, centre = np.full(3, 0.01), np.zeros(3)
+        edges[along], centre[along] = length, side * (surface + begin + 0.5 * length)
+        found.append(part(tuple(edges.tolist()), tuple(centre.tolist()), mass))
+    point = np.zeros(3)
+    point[along] = side * (surface + BOOM - link.length)
+    hinge = Hinge(tuple(point.tolist()), link.stiffness, DAMPING)
+    return HingedPart(found[0].shape, found[0].material, hinge=hinge), found[1]
+
+
+HINGED = tuple(itertools.chain(*(hinged_boom(along, side) for along in (0, 1) for side in (1.0, -1.0))))
 SECOND = (part((0.2, 0.2, 0.1), (0.0, 0.0, 0.1), 3.0),)
 
 
@@ -95,7 +128,10 @@ def main() -> None:
     given = parser.parse_args()
     small = small_bed(given.bed)
     large = tiled(small)
-    cases = {"box, one tile": (small, ()), "box": (large, ()), "second part": (large, SECOND), "booms": (large, BOOMS)}
+    cases = {
+        "box, one tile": (small, ()), "box": (large, ()), "second part": (large, SECOND), "booms": (large, BOOMS),
+        "booms on hinges": (large, HINGED),
+    }  # fmt: skip
     warm = next(landings(1))
     land(small, Lander(shape=Box(BOX), mass=MASS, material=SKIN), replace(warm, time_limit=1.0))
     with given.out.open("w", newline="", encoding="utf-8") as file:
@@ -108,10 +144,10 @@ def main() -> None:
             start = time.process_time()
             outcome = land(bed, lander, landing, frame_count=30 if name == "booms" else 0)
             spent = time.process_time() - start
-            row = [name, number // len(cases), len(bed.grains), f"{lander.reach:.3f}", outcome.status.value]
+            row = [name, number, len(bed.grains), f"{lander.reach:.3f}", outcome.status.value]
             table.writerow([*row, f"{outcome.simulated_time:.1f}", f"{spent:.2f}", f"{os.getloadavg()[0]:.1f}"])
             file.flush()
-            if name == "booms" and number // len(cases) == DRAWN:
+            if name == "booms" and number == DRAWN:
                 draw(MovingBodies.of_landing(outcome, bed, lander, landing), given.picture)
 
 

@@ -191,12 +191,22 @@ class Observables:
     @property
     def contact_force(self) -> Floats:
         """Sum of the contact forces on each body [N], shape [body_count, 3]."""
-        return self._read().bodies.force.copy()
+        force = self._read().bodies.force.copy()
+        if self._state.joints and self._state.local is not None:
+            joints = self._state.local.joints
+            np.add.at(force, joints.first, joints.force)
+            np.subtract.at(force, joints.second, joints.force)
+        return force
 
     @property
     def contact_torque(self) -> Floats:
         """Sum of the torques of the contacts on each body about its centre of mass [N m], [body_count, 3], world."""
-        return self._read().bodies.torque.copy()
+        torque = self._read().bodies.torque.copy()
+        if self._state.joints and self._state.local is not None:
+            joints = self._state.local.joints
+            np.add.at(torque, joints.first, joints.first_torque)
+            np.subtract.at(torque, joints.second, joints.second_torque)
+        return torque
 
     def contacts(self) -> NDArray[Any]:
         """Return the contacts (overlap > 0), a structured array.
@@ -232,9 +242,13 @@ class Observables:
         return kinetic(self.mass, self.velocity, self.spin, self.angular_momentum)
 
     def energy(self) -> dict[str, float]:
-        """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total."""
+        """Return the energy ledger [J]: see energy.ledger: kinetic, potential, elastic, cohesive, lost ones, total.
+
+        The springs of joints count as elastic, and their dashpots as damping.
+        """
         engine = self._read()
         kinetic = float(self.kinetic_energy.sum())
         local = self._state.local
         released = local.work_since_looks() if local is not None else 0.0
+        released -= self._state.joint_energy(engine)
         return ledger(kinetic, self.mass, self.position, self.gravity, engine.pairs, engine.losses(), released)

@@ -8,6 +8,7 @@ from dataclasses import asdict
 import numpy as np
 from numpy.typing import ArrayLike
 
+from lithobrake.dem.bodies.joint import LARGEST_LIMIT, PIN_RATIO, new_joint
 from lithobrake.dem.bodies.rigid_body import Part, Plane, new_body, rows, uniform_bodies, unit, units, vector
 from lithobrake.dem.bodies.shape import Shape
 from lithobrake.dem.bodies.vectors import period_of, refuse_tilted_plane
@@ -164,6 +165,28 @@ class World(Observables):
         self._state.disassemble()
         self.planes[number] = Plane(place, old.normal, old.material, meets)
 
+    def join(
+        self, first: int, second: int, point: ArrayLike, stiffness: float, *, damping_ratio: float = 0.0,
+        limit: float = LARGEST_LIMIT, pin_ratio: float = PIN_RATIO,
+    ) -> int:  # fmt: skip
+        """Hang a body on another by an elastic hinge at a point, as they stand now, and return the joint's number.
+
+        point [m, 3, world frame]: where both are pinned together. stiffness [N m/rad]: of the hinge, about every axis;
+        its torque is the stiffness times the sine of the bend. damping_ratio: of every motion of the joint, with the
+        first body held. limit [rad, at most pi/2]: bend beyond which an elastic stop, as stiff as the pin, acts.
+        pin_ratio: rate of the pin over that of the hinge; half of one over its square is the part by which the pin
+        lowers the frequency. See joint.joint_law. Joined bodies do not touch each other. Joints act where contacts
+        take steps of their own (run_locally).
+        Raises ValueError for values outside these ranges, and for a second body that has a joint already.
+        """
+        law = stiffness, damping_ratio, limit, pin_ratio
+        joint = new_joint(self._state.motion, self._state.joints, (first, second), point, law)
+        self._refuse_watched({joint.second: joint.first}, self._state.watched)
+        self._state.disassemble()
+        self._clock.choose_anew()
+        self._state.joints.append(joint)
+        return len(self._state.joints) - 1
+
     # --- motion --------------------------------------------------------------------------------------------------
 
     @property
@@ -212,6 +235,11 @@ class World(Observables):
         count = self._clock.steps_in(duration, self._chosen_step) if steps is None else checked_count(steps)
         if count == 0:
             return
+        if self._state.joints:
+            raise ValueError(
+                f"World.run takes one step for all, and the world has {len(self._state.joints)} joints; allowed are "
+                "worlds without joints: use World.run_locally"
+            )
         self._refuse_drag_in_turning_frame()
         self._clock.time_step = self.time_step
         engine = self._state.stepping_together(self._step(0.0))
@@ -323,9 +351,18 @@ class World(Observables):
     # --- the watched body ----------------------------------------------------------------------------------------
 
     def watch(self, body: int) -> None:
-        """Note from now on the contact forces on one body, see `watched`."""
-        self._state.watched = range(len(self.bodies))[body]
+        """Note from now on the contact forces on one body and on what is joined to it, see `watched`."""
+        number = range(len(self.bodies))[body]
+        self._refuse_watched({joint.second: joint.first for joint in self._state.joints}, number)
+        self._state.watched = number
         self._state.watch_record[:] = new_record()
+
+    def _refuse_watched(self, hangs_on: dict[int, int], watched: int) -> None:
+        if watched in hangs_on:
+            raise ValueError(
+                f"World.watch body is {watched}, which is joined to body {hangs_on[watched]}; allowed is a body that "
+                "hangs on no other: watch the main body"
+            )
 
     @property
     def watched(self) -> dict[str, float]:

@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 
 from lithobrake.dem.bodies.arrays import LOSSES, Pairs, Period, Step
+from lithobrake.dem.bodies.joint import Joint, leaders_of
 from lithobrake.dem.bodies.orientation import write_spins
 from lithobrake.dem.bodies.rigid_body import Part, Plane, RigidBody
 from lithobrake.dem.bodies.shape import Box, ConvexHull, Shape, Sphere
 from lithobrake.dem.law.restitution import contact_options
+from lithobrake.dem.local_stepping.joints import energy_of_joints, joints_of
 from lithobrake.dem.local_stepping.local_engine import LocalEngine, Setting
 from lithobrake.dem.stepping.engine import (
     MOVING,
@@ -32,7 +34,7 @@ from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.material_properties import Material
 
 NOTHING_WATCHED = -1
-FORMAT_VERSION = 8
+FORMAT_VERSION = 9
 
 
 class WorldState:
@@ -42,6 +44,7 @@ class WorldState:
         self.options, self.period = options, period
         self.bodies: list[RigidBody] = []
         self.planes: list[Plane] = []
+        self.joints: list[Joint] = []
         # Position [m], velocity [m/s], quaternion (body to world) and angular momentum [kg m2/s], [body_count, 3 or 4].
         self.motion: dict[str, Floats] = {
             "position": np.zeros((0, 3)), "velocity": np.zeros((0, 3)), "quaternion": np.zeros((0, 4)),
@@ -109,7 +112,7 @@ class WorldState:
         """Return an engine on these arrays that has taken no step."""
         return Engine(
             self.bodies, self.planes, self.options, motion, pairs, lost, self.watch_record, self.thread_count,
-            self.period,
+            self.period, leaders_of(len(self.bodies), self.joints),
         )  # fmt: skip
 
     def stepping_locally(self, setting: Setting, time: float) -> LocalEngine:
@@ -117,7 +120,7 @@ class WorldState:
         if self.local is None or self.local.setting != setting or self.local.time != time:
             self._step_together()
             self.engine = self.engine or self.new_engine(self.motion, self.pairs, self.lost)
-            self.local = LocalEngine(self.engine, self.bodies, setting, time)
+            self.local = LocalEngine(self.engine, self.bodies, self.joints, setting, time)
             # It finds neighbours and contacts by itself, at its own reach, before anybody is held.
             self.local.run(0.0)
         return self.local
@@ -136,6 +139,13 @@ class WorldState:
             self.pairs = self.engine.pairs
         self.motion = {name: array.copy() for name, array in self.motion.items()}
         self.engine = None
+
+    def joint_energy(self, engine: Engine) -> float:
+        """Return the energy [J] in the springs of all joints, with the bodies as an engine has them."""
+        if not self.joints:
+            return 0.0
+        joints = joints_of(self.joints, self.bodies, 1.0, 0.0) if self.local is None else self.local.joints
+        return float(energy_of_joints(engine.bodies, joints))
 
     def use_threads(self, thread_count: int) -> None:
         self.thread_count = thread_count
@@ -166,6 +176,12 @@ def _shape(text: str) -> Shape:
     return Sphere(*value) if kind == "sphere" else {"box": Box, "hull": ConvexHull}[kind](value)
 
 
+def _joint_values(joint: Joint) -> dict[str, Any]:
+    """Return what a joint is made of; floats written by repr come back bit for bit."""
+    values = {name: getattr(joint, name) for name in Joint.__dataclass_fields__}
+    return {name: value.tolist() if isinstance(value, np.ndarray) else value for name, value in values.items()}
+
+
 def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step, clock: dict[str, Any]) -> None:
     """Write a state, gravity, rotation and drag of its steps, and a clock of plain numbers to an HDF5 file."""
     import h5py
@@ -193,6 +209,7 @@ def write_checkpoint(path: str | os.PathLike[str], state: WorldState, step: Step
         file["body/inertia"] = np.array([body.inertia for body in state.bodies])
         for name in MOVING:
             file[f"body/{name}"] = getattr(engine.bodies, name)
+        file.attrs["joints"] = json.dumps([_joint_values(joint) for joint in state.joints])
         file.attrs["meets_all"] = json.dumps([plane.meets is None for plane in state.planes])
         file["plane/point"] = np.array([plane.point for plane in state.planes]).reshape(-1, 3)
         for name in ("normal", "material", "meets"):
@@ -247,6 +264,9 @@ def _add_members(state: WorldState, data: dict[str, Any], attributes: dict[str, 
         uniform = is_plain and np.array_equal(inertia, own.shape.inertia_per_density * (mass / own.shape.volume))
         centre = None if is_plain else data["body/centre"][k]
         state.bodies.append(RigidBody(own.shape, own.material, mass, inertia, uniform, tuple(others), centre))
+    for values in json.loads(attributes["joints"]):
+        arrays = {name: np.array(value) for name, value in values.items() if isinstance(value, list)}
+        state.joints.append(Joint(**{**values, **arrays}))
     for k, everything in enumerate(json.loads(attributes["meets_all"])):
         meets = None if everything else frozenset(np.flatnonzero(data["plane/meets"][k]).tolist())
         material = materials[data["plane/material"][k]]

@@ -153,6 +153,7 @@ def _shape_problems(study: Study) -> Iterator[str]:
     yield from found
     if found:
         return
+    yield from lander_checks.hinge_problems(study.lander, radius, study.contact.stepping)
     yield from ground_checks.size_problems(study, radius)
     yield from ground_checks.spin_problems(study, radius)
     yield from ground_checks.boulder_problems(study, largest_diameter(study), radius)

@@ -146,6 +146,9 @@ def part_problems(lander: LanderSection) -> Iterator[str]:
             both = "both are" if part.mass is not None else "neither is"
             yield f"{path} takes mass or density, and {both} given; keep one of the two"
         yield from quaternion_problems(f"{path}.orientation", part.orientation)
+        if part.hinge is not None and (part.hinge.frequency is None) == (part.hinge.stiffness is None):
+            both = "both are" if part.hinge.stiffness is not None else "neither is"
+            yield f"{path}.hinge takes frequency or stiffness, and {both} given; keep one of the two"
     if lander.part and isinstance(lander.diameter, Uncertain):
         yield (
             "lander.diameter is uncertain, and the lander has parts, which stand at fixed places; allowed: one number; "
@@ -171,6 +174,58 @@ def mass_problems(lander: LanderSection) -> Iterator[str]:
             f"lander.mass is {least:.4g} kg at its least, and lander.part has {parts:.4g} kg; allowed: more than that, "
             "as it is the mass of all and the main shape has the rest; raise it, or make the parts lighter"
         )
+
+
+def hinge_problems(lander: LanderSection, radius: float, stepping: str) -> Iterator[str]:
+    """Hinges that are out of reach or that no engine takes, and a main body without the inertia of one.
+
+    radius: of the lander [m]. Raises ValueError for a mesh that is refused.
+    """
+    if any(part.hinge is not None for part in lander.part.values()):
+        yield from _main_body_problems(lander)
+    hinges = {name: part.hinge for name, part in lander.part.items() if part.hinge is not None}
+    if hinges and stepping != "local":
+        yield (
+            f'contact.stepping is "{stepping}" with lander.part.{next(iter(hinges))}.hinge; allowed with hinges: '
+            '"local"; leave it out'
+        )
+    for name, hinge in hinges.items():
+        away = math.hypot(*hinge.point)
+        if away > 2.0 * radius:
+            yield (
+                f"lander.part.{name}.hinge.point is {show(hinge.point)} m, {away:.3g} m from the origin of the lander; "
+                f"allowed: at most {2.0 * radius:.3g} m, twice the lander's reach; give it in the axes of the lander"
+            )
+
+
+def _main_body_problems(lander: LanderSection) -> Iterator[str]:
+    """Mass, centre of mass and inertia from which parts on hinges cannot be taken, at the ends of what is uncertain."""
+    if lander.inertia is None:
+        return
+    import numpy as np
+
+    from lithobrake.dem import Assembly, ConvexHull, Sphere, rest_of
+
+    taken = []
+    for part in lander.part.values():
+        if part.hinge is not None:
+            one, mass = part_solid(part), part_mass(part)
+            shape = Sphere(one.radius, one.centroid) if one.radius > 0.0 else ConvexHull(np.array(one.points))
+            taken.append(Assembly(mass, shape.centroid, shape.inertia_per_density * (mass / shape.volume)))
+    tensor = np.diag(lander.inertia[:3])
+    for (i, j), element in zip(((0, 1), (0, 2), (1, 2)), lander.inertia[3:], strict=False):
+        tensor[i, j] = tensor[j, i] = element
+    own, parts = solid(lander), [part_solid(part) for part in lander.part.values()]
+    for mass, centre in product(usual_reach(lander.mass), _centres_of_mass(lander, own, parts)):
+        moments = np.linalg.eigvalsh(rest_of(Assembly(mass, np.array(centre), tensor), taken).inertia)
+        if moments[0] <= 0.0 or moments[2] > (moments[0] + moments[1]) * (1.0 + ROUNDING):
+            shown, left = (", ".join(f"{one:.4g}" for one in some) for some in (lander.inertia, moments))
+            yield (
+                f"lander.inertia is [{shown}] kg m2 with parts on hinges, which leave the main body moments of {left} "
+                f"kg m2 at {mass:.4g} kg; allowed: above 0, each at most the sum of the other two; raise it, or make "
+                "these parts lighter"
+            )
+            return
 
 
 def inertia_problems(lander: LanderSection) -> Iterator[str]:

@@ -29,6 +29,22 @@ class CentreSection(Section):
     """Along z."""
 
 
+class HingeSection(Section):
+    """An elastic hinge of a part, which may stand for the bending of a boom."""
+
+    point: Annotated[tuple[float, float, float], Numbers("m", count=3)] = Field(examples=["[0.56, 0.0, 0.0]"])
+    """Position of the hinge."""
+    frequency: Annotated[float, Number("Hz", above=0)] | None = Field(default=None, examples=["6.7"])
+    """Frequency at which the part swings while the lander is held; or give stiffness. The shorter the period, the
+    longer a landing takes: time steps follow it."""
+    stiffness: Annotated[float, Number("N m/rad", above=0)] | None = None
+    """Stiffness about every axis; or give frequency."""
+    damping_ratio: Annotated[float, Number("", at_least=0, at_most=1)] = Field(examples=["0.01"])
+    """Damping of that swing over critical damping."""
+    limit_deg: Annotated[float, Number("deg", above=0, at_most=90)] = 90.0
+    """Bend at which an elastic stop begins to act."""
+
+
 class _PartBody(Section):
     shape: Literal["box", "sphere", "hull"] = Field(examples=['"box"'])
     """Shape: "box" takes edges, "sphere" takes diameter, "hull" takes file."""
@@ -52,6 +68,8 @@ class _PartBody(Section):
     """Its mass, which is part of lander.mass; or give density."""
     density: Annotated[float, ground_sections.allowed("density", Number)] | None = None
     """Its mass divided by its volume; or give mass."""
+    hinge: HingeSection | None = None
+    """Hinge on which it hangs; absent: it is fixed. Only with contact.stepping = "local"."""
 
 
 def _of_part(known: MaterialProperty) -> str:
@@ -70,8 +88,8 @@ _PartProperties: Any = ground_sections.with_properties(
 
 
 class PartSection(_PartProperties, _PartBody):
-    """A convex part that is fixed to the lander, such as a leg, a panel or a boom. There may be any number of parts,
-    each in a table [lander.part.NAME] of its own. Parts may overlap, have no contact with each other and do not bend.
+    """A convex part of the lander, such as a leg, a panel or a boom, fixed or on a hinge. There may be any number of
+    parts, each in a table [lander.part.NAME] of its own. Parts may overlap and have no contact with each other.
     Lengths and directions are along the axes of the lander, from the centre of a box or sphere, or from the origin of
     the file of a mesh."""
 
@@ -113,10 +131,10 @@ _LanderProperties: Any = ground_sections.with_properties(
 
 
 class LanderSection(_LanderProperties, _LanderBody):
-    """The lander: a rigid convex body, to which parts may be fixed."""
+    """The lander: a rigid convex body, to which parts may be fixed or hinged."""
 
     part: dict[str, PartSection] = Field(default={})
-    """Parts that are fixed to the lander."""
+    """Parts of the lander beside its main shape."""
 
     @property
     def is_ball(self) -> bool:

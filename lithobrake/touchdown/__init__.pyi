@@ -5,6 +5,12 @@ from .bed_library import stored_or_poured as stored_or_poured
 from .bed_library import take_stored as take_stored
 from .grains import Boulders as Boulders
 from .grains import GrainSizes as GrainSizes
+from .hinged_part import BeamLink as BeamLink
+from .hinged_part import Hinge as Hinge
+from .hinged_part import HingedPart as HingedPart
+from .hinged_part import beam_frequency as beam_frequency
+from .hinged_part import beam_link as beam_link
+from .hinged_part import hinge_stiffness as hinge_stiffness
 from .lander import Lander as Lander
 from .lander import smallest_bed as smallest_bed
 from .lander import wave_speed as wave_speed

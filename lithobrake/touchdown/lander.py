@@ -1,4 +1,4 @@
-"""The lander: a rigid body of one convex part or several, and the smallest bed for it."""
+"""The lander: a body of one convex part or several, fixed or on hinges, and the smallest bed for it."""
 
 import math
 from dataclasses import dataclass, replace
@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from lithobrake.dem import (
+    Assembly,
     Box,
     ConvexHull,
     Material,
@@ -18,7 +19,9 @@ from lithobrake.dem import (
     contact_duration,
     equivalent_radius,
     new_body,
+    rest_of,
 )
+from lithobrake.touchdown.hinged_part import HingedPart
 from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.field_errors import FieldError
 
@@ -28,14 +31,14 @@ FOOTPRINT_STEPS = 4
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Lander:
-    """A rigid body of a mass [kg]: a main shape, and parts fixed to it, such as legs and booms, in its axes.
+    """A lander of a mass [kg]: a main shape, and parts such as legs and booms, in its axes, fixed or on hinges.
 
     The mass is that of all; a part has its own by the density of its material, and the main shape has what is left.
-    centre_of_mass [m, 3] and inertia [kg m2, 3 x 3, about the centre of mass] are in the axes in which the shapes are
-    given; None: those of homogeneous parts.
+    centre_of_mass [m, 3] and inertia [kg m2, 3 x 3, about the centre of mass] are those of all, no hinge bent, in the
+    axes in which the shapes are given; None: those of homogeneous parts.
 
     Raises ValueError for a mass that is not positive or less than that of the parts, and for an inertia that no body
-    has.
+    has, or none that is left when the hinged parts are taken off.
     """
 
     shape: Sphere | Box | ConvexHull
@@ -56,6 +59,8 @@ class Lander:
                 f"is more than the {self.mass - self.own_mass:.6g} kg of its parts, for its main shape",
                 "raise it, or make the parts lighter", "kg",
             )  # fmt: skip
+        if self.hinged:
+            self.main_body  # noqa: B018  refused here, and not in the middle of a landing
 
     @property
     def own_mass(self) -> float:
@@ -75,6 +80,28 @@ class Lander:
         return new_body(self.shape, self.own_material, self.mass, self.inertia, self.parts, self.centre_of_mass)
 
     @property
+    def hinged(self) -> tuple[HingedPart, ...]:
+        """Parts on hinges."""
+        return tuple(part for part in self.parts if isinstance(part, HingedPart))
+
+    @cached_property
+    def main_body(self) -> RigidBody:
+        """The body without the parts on hinges, which are bodies of their own."""
+        whole = Assembly(self.mass, self.body.centre_of_mass, self.body.inertia)
+        taken = [(part.mass, part.shape.centroid, part.body.inertia) for part in self.hinged]
+        rest = rest_of(whole, [Assembly(*one) for one in taken])
+        fixed = [part for part in self.parts if not isinstance(part, HingedPart)]
+        try:
+            return new_body(self.shape, self.own_material, rest.mass, rest.inertia, fixed, rest.centre)
+        except FieldError as error:
+            raise FieldError(
+                "Lander.inertia", self.body.inertia.tolist(),
+                f"is that of a body from which the {len(taken)} parts on hinges can be taken, and leaves not "
+                f"{rest.inertia.tolist()} kg m2",
+                "raise it, or make these parts lighter", "kg m2",
+            ) from error  # fmt: skip
+
+    @property
     def reach(self) -> float:
         """Distance of the farthest point from the centre of mass [m]."""
         return self.body.bounding_radius
@@ -92,14 +119,8 @@ class Lander:
 
     def lowest(self, position: Floats, rotation: Floats) -> float:
         """Return the height [m] of the lowest point of the body at a position and rotation matrix, body to world."""
-        return float(position[2]) + min(self._lowest_of(part.shape, rotation) for part in self.body.parts)
-
-    def _lowest_of(self, shape: Shape, rotation: Floats) -> float:
-        """Return the height of the lowest point of a shape over the centre of mass [m]."""
         centre = self.body.centre_of_mass
-        if isinstance(shape, ConvexHull):
-            return float(((shape.vertices - centre) @ rotation[2]).min())
-        return float((shape.centroid - centre) @ rotation[2]) - shape.bounding_radius
+        return float(position[2]) + min(lowest_of(part.shape, centre, rotation) for part in self.body.parts)
 
     def footprint(self, rotation: Floats) -> Floats:
         """Return points spread over the parts beside the main shape, seen from above [m], [point_count, 2], from the
@@ -113,6 +134,16 @@ class Lander:
             points.append((shape.centroid - self.body.centre_of_mass + steps * corners).reshape(-1, 3))
         across: Floats = (np.concatenate(points) @ rotation.T)[:, :2]
         return across
+
+
+def lowest_of(shape: Shape, centre: Floats, rotation: Floats) -> float:
+    """Return the height [m] of the lowest point of a shape over a centre of mass [m], in the axes of the shape.
+
+    rotation: [3, 3], body to world.
+    """
+    if isinstance(shape, ConvexHull):
+        return float(((shape.vertices - centre) @ rotation[2]).min())
+    return float((shape.centroid - centre) @ rotation[2]) - shape.bounding_radius
 
 
 def wave_speed(rock: Material, diameter: float, speed: float) -> float:

@@ -1,5 +1,6 @@
 """The lander of a study: its shapes, mass, inertia and materials."""
 
+import math
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
@@ -9,7 +10,7 @@ import numpy as np
 
 from lithobrake import touchdown
 from lithobrake.study import Study
-from lithobrake.study.lander_section import LanderSection, PartSection
+from lithobrake.study.lander_section import HingeSection, LanderSection, PartSection
 from lithobrake.touchdown.soil import Soil, Values
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.material_properties import Material
@@ -58,7 +59,18 @@ def lander_part(section: PartSection, surface: Material) -> "dem.Part":
 
     shape = part_shape(section)
     density = section.density if section.mass is None else section.mass / shape.volume
-    return dem.Part(shape, replace(surface, density=float(density or 0.0)))
+    part = dem.Part(shape, replace(surface, density=float(density or 0.0)))
+    if section.hinge is None:
+        return part
+    return touchdown.HingedPart(shape, part.material, hinge=part_hinge(section.hinge, part))
+
+
+def part_hinge(section: HingeSection, part: "dem.Part") -> "touchdown.Hinge":
+    """The hinge of a part."""
+    stiffness = section.stiffness
+    if stiffness is None:
+        stiffness = touchdown.hinge_stiffness(part, section.point, float(section.frequency or 0.0))
+    return touchdown.Hinge(section.point, stiffness, section.damping_ratio, math.radians(section.limit_deg))
 
 
 def part_shape(section: PartSection) -> "dem.Sphere | dem.ConvexHull":

@@ -7,6 +7,7 @@ import numpy as np
 from lithobrake.dem import BodyMotion, World
 from lithobrake.touchdown.bed import Bed, rotation_matrix
 from lithobrake.touchdown.lander import Lander
+from lithobrake.touchdown.lander_bodies import LanderBodies
 from lithobrake.touchdown.landing import LEAVING, Landing, Outcome, outgoing, turned, turned_attitude
 from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
@@ -32,22 +33,26 @@ class RestWatch:
 
     def __init__(self, lander: Lander, inward_gravity: float) -> None:
         """Begin; inward_gravity: of the site [m/s2]. Where it does not point inward nothing rests."""
-        self.reach, self.way = lander.reach, REST_WAY * lander.smallest_edge
+        self.way = REST_WAY * lander.smallest_edge
+        self.reaches = (lander.reach, *(part.shape.bounding_radius for part in lander.hinged))
         self.patience = rest_time(lander, inward_gravity)
         self.since = math.inf
-        self.anchor: BodyMotion | None = None
+        self.anchor: tuple[BodyMotion, ...] = ()
 
-    def is_over(self, time: float, motion: BodyMotion) -> bool:
-        """Look at the lander at a time [s], and return whether it rests."""
-        if self.anchor is None or self._moved(self.anchor, motion) > self.way:
-            self.since, self.anchor = time, motion
+    def is_over(self, time: float, *motions: BodyMotion) -> bool:
+        """Look at the lander, and at its parts on hinges, at a time [s], and return whether all of it rests."""
+        # zip ends with the shortest, so nothing has moved from no anchor.
+        moved = [moved_by(*three) for three in zip(self.anchor, motions, self.reaches, strict=False)]
+        if max(moved, default=math.inf) > self.way:
+            self.since, self.anchor = time, motions
         return time - self.since > self.patience
 
-    def _moved(self, before: BodyMotion, now: BodyMotion) -> float:
-        """Return a bound on how far a point of the lander has moved [m]."""
-        between = abs(float(np.dot(before.orientation, now.orientation)))
-        turn = 2.0 * math.acos(min(between, 1.0))
-        return float(np.linalg.norm(now.position - before.position)) + turn * self.reach
+
+def moved_by(before: BodyMotion, now: BodyMotion, reach: float) -> float:
+    """Return a bound on how far a point of a body within a reach [m] has moved [m]."""
+    between = abs(float(np.dot(before.orientation, now.orientation)))
+    turn = 2.0 * math.acos(min(between, 1.0))
+    return float(np.linalg.norm(now.position - before.position)) + turn * reach
 
 
 def rest_time(lander: Lander, inward_gravity: float) -> float:
@@ -64,9 +69,10 @@ def capture_lift(lander: Lander, gravity: float) -> float:
 
 class OutcomeJudge:
     def __init__(self, bed: Bed, lander: Lander, landing: Landing, world: World, number: int, frame_count: int) -> None:
-        self.bed, self.lander, self.landing, self.world, self.number = bed, lander, landing, world, number
+        self.bed, self.lander, self.landing, self.world = bed, lander, landing, world
         self.start_time = world.time
-        self.motion = world.motion_of(number)
+        self.bodies = LanderBodies(world, lander, number)
+        self.motion = self.bodies.motion()
         self.start_energy = self.motion.kinetic_energy
         self.clear_height = bed.surface_height + bed.grain_diameter
         self.ended: TouchdownOutcome | None = None
@@ -85,14 +91,14 @@ class OutcomeJudge:
 
     def height(self) -> float:
         """Return the height of the lander's lowest point [m]."""
-        return self.lander.lowest(self.motion.position, rotation_matrix(self.motion.orientation))
+        return self.bodies.lowest(self.motion)
 
     def look(self) -> None:
         """Take note of the lander, and tell its outcome once it can be told.
 
         Raises ValueError for a lander that went through the floor: no outcome is to be told of that.
         """
-        before, self.motion = self.motion, self.world.motion_of(self.number)
+        before, self.motion = self.motion, self.bodies.motion()
         height, first_touch = self.height(), self.world.first_touch
         if height < -SUNK_FRACTION * self.lander.smallest_edge:
             raise ValueError(
@@ -181,7 +187,7 @@ class OutcomeJudge:
             apex = height - ground + (0.5 * speed**2 / inward if inward > 0.0 else math.inf)
             if apex > self.landing.hop_height:
                 return TouchdownOutcome.CLEAR
-        if rest.is_over(self.world.time, self.motion):
+        if rest.is_over(self.world.time, self.motion, *self.bodies.part_motions()):
             return TouchdownOutcome.CAPTURED
         over = self.world.time - self.start_time >= self.landing.time_limit
         return TouchdownOutcome.TIME_LIMIT if over else None
@@ -190,10 +196,8 @@ class OutcomeJudge:
         """Keep a frame now and then: never more than twice those asked for, evenly spread over the whole landing."""
         if self.frame_count == 0 or self.looks % self.stride:
             return
-        world = self.world
-        force = np.linalg.norm(world.contact_force, axis=1)
-        frame = {"position": world.position, "orientation": world.orientation, "force": force}
-        self.frames.append({"time": np.array(world.time - self.start_time), **frame})
+        time = np.array(self.world.time - self.start_time)
+        self.frames.append({"time": time, **self.bodies.frame(self.motion)})
         # How long a landing lasts is not known, so every second frame goes as it gets longer: memory stays bounded and
         # frames even.
         if len(self.frames) == 2 * self.frame_count:

@@ -11,6 +11,7 @@ from lithobrake.dem import BodyMotion, Material, World, folded, pair_law, period
 from lithobrake.touchdown import settling
 from lithobrake.touchdown.bed import Bed, rotation_matrix
 from lithobrake.touchdown.lander import Lander, smallest_bed
+from lithobrake.touchdown.lander_bodies import add_lander
 from lithobrake.touchdown.landing import Landing, Outcome
 from lithobrake.touchdown.outcome_judge import OutcomeJudge, capture_lift, rest_time
 from lithobrake.vocabulary.callbacks import Progress, silent
@@ -53,8 +54,12 @@ def land(
             "Bed.width", bed.width, f"is more than the {2.0 * lander.reach:.3g} m that the lander is across",
             "make the bed wider", "m",
         )  # fmt: skip
-    world = bed.world(landing.grain, bed.gravity, landing.contact, landing.gravity)
     locally = landing.contact.stepping == "local"
+    if lander.hinged and not locally:
+        raise FieldError(
+            "ContactModel.stepping", landing.contact.stepping, 'is "local" for a lander with parts on hinges'
+        )
+    world = bed.world(landing.grain, bed.gravity, landing.contact, landing.gravity)
     if locally and released_speed(bed, landing.grain) < CALM_SPEED * landing.speed:
         world.gravity = np.array(landing.gravity)
     else:
@@ -178,7 +183,7 @@ def grain_speed(world: World) -> float:
 
 
 def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
-    """Put the lander just above every grain under its bounding circle, and return its number."""
+    """Put the lander just above every grain under its bounding circle, and return the number of its main body."""
     reach = lander.reach
     place = np.array([*landing.place, 0.0])
     below = np.linalg.norm(folded(world.position[:, :2] - place[:2], period_of(bed.period)), axis=1)
@@ -189,7 +194,4 @@ def release(world: World, bed: Bed, lander: Lander, landing: Landing) -> int:
             top = max(top, float(world.position[k, 2] + height.max()))
     rotation = rotation_matrix(np.array(landing.orientation) / np.linalg.norm(landing.orientation))
     place[2] = top - lander.lowest(np.zeros(3), rotation)
-    return world.add_body(
-        lander.shape, lander.own_material, tuple(place), tuple(landing.velocity), landing.orientation, landing.spin,
-        mass=lander.mass, inertia=lander.inertia, parts=lander.parts, centre_of_mass=lander.centre_of_mass,
-    )  # fmt: skip
+    return add_lander(world, lander, place, landing.velocity, landing.orientation, landing.spin)

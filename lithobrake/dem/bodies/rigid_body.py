@@ -83,6 +83,24 @@ class RigidBody:
         # A ball off the centre of mass is carried round with its centre, but its own turning moves none of its surface.
         return max(placed_radius(part) - isinstance(part.shape, Sphere) * part.shape.rounding for part in self.parts)
 
+    @property
+    def surface_mobility(self) -> float:
+        """Largest square of the speed of a point of its surface over twice the energy of its turning [1/kg].
+
+        A point at r moves by spin x r: for a spin of the energy 1/2 J.I^-1.J this is largest for an eigenvector of
+        R I^-1 R^T, with the matrix R of that product.
+        """
+        inverse, found = np.linalg.inv(self.inertia), [0.0]
+        for part in self.parts:
+            arms = part.shape.core + np.array(part.offset)
+            # The rounding of a hull lies farther out; a ball that turns about its own centre moves no surface.
+            rounding = 0.0 if isinstance(part.shape, Sphere) else part.shape.rounding
+            across = np.cross(np.eye(3)[None], arms[:, None, :])
+            squares = np.linalg.eigvalsh(np.transpose(across, (0, 2, 1)) @ inverse @ across)[:, -1]
+            length = np.linalg.norm(arms, axis=1)
+            found += list(squares * ((length + rounding) / np.maximum(length, 1e-300)) ** 2)
+        return float(max(found))
+
     @cached_property
     def smallest_masses_at_contact(self) -> tuple[float, ...]:
         """Smallest mass [kg] that a contact force meets on each part."""
@@ -167,6 +185,21 @@ def sum_of_parts(parts: Sequence[tuple[Shape, float]]) -> Assembly:
         way = shape.centroid - centre
         inertia += shape.inertia_per_density * (own / shape.volume) + own * (way @ way * np.eye(3) - np.outer(way, way))
     return Assembly(mass, centre, inertia)
+
+
+def rest_of(whole: Assembly, taken: Sequence[Assembly]) -> Assembly:
+    """Return what is left of a body when others are taken off it, all given in one frame.
+
+    Its inertia need not be one that a body has.
+    """
+    mass = whole.mass - sum(one.mass for one in taken)
+    moment = whole.mass * whole.centre - sum((one.mass * one.centre for one in taken), np.zeros(3))
+    centre = moment / mass
+    inertia = np.zeros((3, 3))
+    for sign, one in ((1.0, whole), *((-1.0, one) for one in taken)):
+        way = one.centre - centre
+        inertia += sign * (one.inertia + one.mass * (way @ way * np.eye(3) - np.outer(way, way)))
+    return Assembly(mass, centre, 0.5 * (inertia + inertia.T))
 
 
 def uniform_bodies(shapes: Sequence[Shape], material: Material) -> list[RigidBody]:

@@ -18,6 +18,7 @@ from lithobrake.dem.local_stepping.free_motion import (
     relative_weight,
     surface_speed,
     surge_bound,
+    swept,
     time_to_close,
     turning_rate,
     weight,
@@ -31,6 +32,9 @@ from lithobrake.vocabulary.array_types import Floats, Integers, Vector
 NOTED_CHANGE = 0.3
 # The same of its acceleration, of which so much of gravity besides passes without notice.
 NOTED_WEIGHT = 0.2
+# A body on a joint swings to and fro. Its plans hold for free fall with so many times the acceleration that it has, or
+# with this part of what they held for before: so a few swings are enough to find their size.
+SWINGING, KEPT = 2.0, 0.5
 # A contact keeps its step until the one that it should have is below, or above, these parts of it.
 # Steps that follow the collision at every look are uneven, which costs a frictionless landing 5 % of its energy.
 SHORTER, LONGER = 0.8, 2.0
@@ -269,6 +273,12 @@ def has_changed(bodies: Bodies, flight: Flight, body: int, now: float, rules: Ru
     turn = minus(row(bodies.angular_momentum, body), plus(row(flight.momentum, body), scaled(time, torque)))
     turning *= bodies.turning_radius[body]
     # Of a body that was never planned the change is not a number.
+    if flight.joints[body] > 0:
+        # Planned for free fall, see note_plan.
+        gained = dot(change, change) ** 0.5 + swept(bodies, flight, body, turn)
+        force, torque = row(bodies.force, body), row(bodies.torque, body)
+        surge = mass * dot(force, force) ** 0.5 + swept(bodies, flight, body, torque)
+        return not gained <= flight.slack[body] or surge > flight.surge[body]
     if not dot(change, change) ** 0.5 + turning * dot(turn, turn) ** 0.5 <= flight.slack[body]:
         return True
     force, torque = minus(row(bodies.force, body), force), minus(row(bodies.torque, body), torque)
@@ -286,6 +296,34 @@ def touches(pairs: Pairs, flight: Flight, plans: Plans, body: int) -> bool:
 
 
 @kernel
+def note_plan(
+    bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, body: int, now: float, rules: Rules
+) -> None:  # fmt: skip
+    """Note the motion of a body for which its pairs are planned now [s], and which changes of it they allow for.
+
+    Writes to flight.
+    """
+    put(flight.velocity, body, row(bodies.velocity, body))
+    put(flight.momentum, body, row(bodies.angular_momentum, body))
+    put(flight.force, body, row(bodies.force, body))
+    put(flight.torque, body, row(bodies.torque, body))
+    flight.planned[body] = now
+    speed, along = surface_speed(bodies, flight, body), acceleration_of(bodies, flight, body, rules)
+    surge = dot(along, along) ** 0.5 + turning_rate(bodies, flight, body, rules)
+    if flight.joints[body] > 0:
+        put(flight.force, body, (0.0, 0.0, 0.0))
+        put(flight.torque, body, (0.0, 0.0, 0.0))
+        flight.slack[body] = max(speed, KEPT * flight.slack[body])
+        flight.surge[body] = max(SWINGING * surge, KEPT * flight.surge[body]) + NOTED_WEIGHT * weight(rules)
+    elif touches(pairs, flight, plans, body):
+        flight.slack[body] = NOTED_CHANGE * speed
+        flight.surge[body] = NOTED_CHANGE * surge + NOTED_WEIGHT * weight(rules)
+    else:
+        # What touches nothing is not pushed, and what begins to touch is planned anew.
+        flight.slack[body], flight.surge[body] = 0.0, 0.0
+
+
+@kernel
 def replan(
     bodies: Bodies, pairs: Pairs, flight: Flight, plans: Plans, agenda: Agenda, body: int, now: float, rules: Rules
 ) -> None:
@@ -294,18 +332,7 @@ def replan(
     What is near is not looked at for that: from the gap at its last look and the motion since it follows when the next
     one is due.
     """
-    put(flight.velocity, body, row(bodies.velocity, body))
-    put(flight.momentum, body, row(bodies.angular_momentum, body))
-    put(flight.force, body, row(bodies.force, body))
-    put(flight.torque, body, row(bodies.torque, body))
-    flight.planned[body] = now
-    # What touches nothing is not pushed, and what begins to touch is planned anew.
-    flight.slack[body], flight.surge[body] = 0.0, 0.0
-    if touches(pairs, flight, plans, body):
-        along = acceleration_of(bodies, flight, body, rules)
-        surge = dot(along, along) ** 0.5 + turning_rate(bodies, flight, body, rules)
-        flight.slack[body] = NOTED_CHANGE * surface_speed(bodies, flight, body)
-        flight.surge[body] = NOTED_CHANGE * surge + NOTED_WEIGHT * weight(rules)
+    note_plan(bodies, pairs, flight, plans, body, now, rules)
     plan_search(bodies, flight, agenda, body, now, rules)
     entry = flight.head[body]
     while entry >= 0:

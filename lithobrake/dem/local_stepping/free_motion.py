@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.compilation.compiled import kernel
+from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Pairs, Planes, both_roundings, both_shapes, first_shape
 from lithobrake.dem.bodies.orientation import turn_by
 from lithobrake.dem.bodies.turning_frame import (
@@ -40,7 +40,10 @@ class Flight(NamedTuple):
     touching: Integers  # [body_count], contacts that push it
     turning: Floats  # [body_count], 1/(kg m2), largest inverse moment of inertia
     slenderness: Floats  # [body_count], largest over smallest moment of inertia
+    mobility: Floats  # [body_count], 1/kg, square of the surface's speed over twice the energy of the turning, at most
     mass: Floats  # [part_count], kg, smallest that a contact meets
+    leader: Integers  # [body_count], body at the root of all that it is joined to, see joints.py; itself: not joined
+    joints: Integers  # [body_count], joints that it is part of
     head: Integers  # [body_count], first entry of the list of its pairs, -1: none
     stamp: Integers  # [part_count + plane_count], by which a search tells what it has listed
     told: Floats  # [body_count], s, until when its spin knows how the frame turns
@@ -65,18 +68,47 @@ def spin_of(bodies: Bodies, body: int) -> Vector:
     return times(bodies.inverse_inertia, body, row(bodies.angular_momentum, body))
 
 
+@large_kernel
+def spin_size(bodies: Bodies, body: int) -> float:
+    """Return the size of a body's angular velocity [rad/s]."""
+    spin = spin_of(bodies, body)
+    return dot(spin, spin) ** 0.5
+
+
 @kernel
 def spin_bound(bodies: Bodies, flight: Flight, body: int) -> float:
-    """Return a bound on the size of a body's angular velocity [rad/s], however it tumbles."""
+    """Return a bound on the size of a body's angular velocity [rad/s], however it tumbles; on a joint the one at hand,
+    as a slender part would tumble 10 000 times as fast about its own axis.
+    """
     momentum = row(bodies.angular_momentum, body)
+    if flight.joints[body] > 0:
+        return spin_size(bodies, body)
     return flight.turning[body] * dot(momentum, momentum) ** 0.5
+
+
+@large_kernel
+def swept(bodies: Bodies, flight: Flight, body: int, momentum: Vector) -> float:
+    """Return a bound on the speed [m/s] that an angular momentum gives the surface of a body on a joint.
+
+    By the energy of the turning, which free tumbling keeps. A change of the momentum, or a torque, may stand in its
+    place.
+    """
+    return (flight.mobility[body] * max(0.0, dot(momentum, times(bodies.inverse_inertia, body, momentum)))) ** 0.5
+
+
+@kernel
+def turning_speed(bodies: Bodies, flight: Flight, body: int) -> float:
+    """Return a bound on the speed of a body's surface by its spin alone [m/s]."""
+    if flight.joints[body] > 0:
+        return swept(bodies, flight, body, row(bodies.angular_momentum, body))
+    return bodies.turning_radius[body] * spin_bound(bodies, flight, body)
 
 
 @kernel
 def surface_speed(bodies: Bodies, flight: Flight, body: int) -> float:
     """Return a bound on the speed of a body's surface [m/s]."""
     velocity = row(bodies.velocity, body)
-    return dot(velocity, velocity) ** 0.5 + bodies.turning_radius[body] * spin_bound(bodies, flight, body)
+    return dot(velocity, velocity) ** 0.5 + turning_speed(bodies, flight, body)
 
 
 @kernel
@@ -94,6 +126,8 @@ def turning_rate(bodies: Bodies, flight: Flight, body: int, rules: Rules) -> flo
         return 0.0
     torque, radius = row(bodies.torque, body), bodies.turning_radius[body]
     bound = radius * flight.turning[body] * dot(torque, torque) ** 0.5
+    if flight.joints[body] > 0:
+        bound = swept(bodies, flight, body, torque)
     if rules.rate > 0.0:
         bound += radius * precession(flight.slenderness[body], spin_bound(bodies, flight, body), rules.rate)
     return bound
@@ -128,6 +162,7 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
         flight.told[body] = now
         return
     before, spin = row(bodies.velocity, body), spin_bound(bodies, flight, body)
+    sweep = turning_speed(bodies, flight, body) if flight.joints[body] > 0 else 0.0
     along = acceleration_of(bodies, flight, body, rules)
     after = fall(bodies, body, before, time, along, rules)
     # Under a steady torque the angular momentum moves on a straight line, as the velocity does.
@@ -135,7 +170,7 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
     add(bodies.angular_momentum, body, 1.0, half)
     # In flight, with drag or without, the velocity moves on a straight line, on which its size is largest at an end.
     fastest = max(dot(before, before), dot(after, after)) ** 0.5
-    untold, tells = now - flight.told[body], False
+    begun, untold, tells = spin, now - flight.told[body], False
     if rules.rate > 0.0:
         fastest += bulge(before, after, along, time, rules.rate)
         spin += untold * precession(flight.slenderness[body], spin, rules.rate)
@@ -151,8 +186,12 @@ def fly_to(bodies: Bodies, flight: Flight, body: int, now: float, rules: Rules) 
     if tells:
         with_frame(bodies, body, -1.0, rules.rotation)
     add(bodies.angular_momentum, body, 1.0, half)
-    spin = max(spin, spin_bound(bodies, flight, body))
-    bodies.travel[body] += time * (fastest + bodies.turning_radius[body] * spin)
+    if flight.joints[body] > 0:
+        precessed = spin - begun
+        sweep = max(sweep, turning_speed(bodies, flight, body)) + bodies.turning_radius[body] * precessed
+    else:
+        sweep = bodies.turning_radius[body] * max(spin, spin_bound(bodies, flight, body))
+    bodies.travel[body] += time * (fastest + sweep)
 
 
 @kernel
@@ -258,10 +297,10 @@ class Approach(NamedTuple):
 @kernel
 def closing_speed(bodies: Bodies, flight: Flight, first: int, second: int) -> float:
     """Return a bound on the speed at which the surfaces of two near each other while their plans hold [m/s]."""
-    turning = bodies.turning_radius[first] * spin_bound(bodies, flight, first)
+    turning = turning_speed(bodies, flight, first)
     between, slack = row(bodies.velocity, first), flight.slack[first]
     if second >= 0:
-        turning += bodies.turning_radius[second] * spin_bound(bodies, flight, second)
+        turning += turning_speed(bodies, flight, second)
         between = minus(between, row(bodies.velocity, second))
         slack += flight.slack[second]
     return dot(between, between) ** 0.5 + turning + slack
@@ -276,11 +315,11 @@ def closing_acceleration(bodies: Bodies, flight: Flight, first: int, second: int
     """
     spin = spin_bound(bodies, flight, first)
     acceleration = relative_surge(bodies, flight, first, second, rules) + 2.0 * rules.rate * speed
-    acceleration += 2.0 * spin * (bodies.turning_radius[first] * spin + speed)
+    acceleration += 2.0 * spin * (turning_speed(bodies, flight, first) + speed)
     if second < 0:
         return acceleration
     spin = spin_bound(bodies, flight, second)
-    return acceleration + 2.0 * spin * (bodies.turning_radius[second] * spin + speed)
+    return acceleration + 2.0 * spin * (turning_speed(bodies, flight, second) + speed)
 
 
 @kernel

@@ -105,9 +105,9 @@ def hold_what_is_slow(
             if not far:
                 flight.time[body] = now
                 let_go(bodies, pairs, flight, plans, agenda, body, now, rules)
-        # What touches nothing flies, however slowly, and held it would hang above the ground.
+        # What touches nothing flies, however slowly, and held it would hang above the ground; what has a joint swings.
         elif (
-            far and speed_of_surface(bodies, body) < calm
+            far and flight.joints[body] == 0 and speed_of_surface(bodies, body) < calm
             and touches(pairs, flight, plans, body) and carries(bodies, body, rules, CARRIED)
         ):  # fmt: skip
             hold(bodies, pairs, flight, plans, agenda, body, now, rules)

@@ -5,12 +5,14 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from lithobrake.dem.bodies.arrays import Pairs, Reactions, Step
+from lithobrake.dem.bodies.joint import Joint, leaders_of
 from lithobrake.dem.bodies.rigid_body import RigidBody
 from lithobrake.dem.bodies.vectors import folded
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, new_agenda
 from lithobrake.dem.local_stepping.cells import Cells, cells_of
 from lithobrake.dem.local_stepping.free_motion import Flight, Rules
 from lithobrake.dem.local_stepping.holding import hold_what_is_slow
+from lithobrake.dem.local_stepping.joints import Joints, joints_of
 from lithobrake.dem.local_stepping.local_steps import NO_ROOM, advance_locally
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, NO_SLOT
 from lithobrake.dem.stepping.engine import Engine
@@ -28,6 +30,7 @@ SLOTS = 8
 # What a run has beside its engine.
 TABLES: dict[str, type[Any]] = {
     "flight": Flight, "plans": Plans, "agenda": Agenda, "cells": Cells, "reactions": Reactions,
+    "joints": Joints,
 }  # fmt: skip
 
 
@@ -39,7 +42,7 @@ class Setting(NamedTuple):
     watched: int
 
 
-def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
+def flight_of(engine: Engine, bodies: list[RigidBody], joints: list[Joint], time: float) -> Flight:
     """Return bodies that have just arrived at an instant [s] and were never planned."""
     n = len(bodies)
     moments: Floats = np.linalg.eigvalsh(engine.bodies.inverse_inertia_body).astype(np.float64)
@@ -47,11 +50,15 @@ def flight_of(engine: Engine, bodies: list[RigidBody], time: float) -> Flight:
     # NaN, from which no change is small: every body is planned at its first look.
     never = np.full((n, 3), np.nan)
     stamp = np.full(len(mass) + len(engine.planes.offset), -1)
+    members = [body for joint in joints for body in (joint.first, joint.second)]
+    joined = np.bincount(np.array(members, dtype=np.int64), minlength=n).astype(np.int64)
     return Flight(
         time=np.full(n, time), planned=np.full(n, time), velocity=never, momentum=np.zeros((n, 3)),
         force=np.zeros((n, 3)), torque=np.zeros((n, 3)), slack=np.zeros(n), surge=np.zeros(n),
-        touching=np.zeros(n, np.int64), turning=moments[:, -1].copy(), slenderness=moments[:, -1] / moments[:, 0],
-        mass=mass, head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
+        touching=joined.copy(), turning=moments[:, -1].copy(), slenderness=moments[:, -1] / moments[:, 0],
+        mass=mass, leader=leaders_of(n, joints),
+        mobility=np.array([body.surface_mobility if joined[k] else 0.0 for k, body in enumerate(bodies)]),
+        joints=joined, head=np.full(n, -1), stamp=stamp, held=np.zeros(n, np.bool_), fastest_held=np.zeros(1),
         resolved_speed=np.zeros(1), told=np.full(n, time),
     )  # fmt: skip
 
@@ -70,9 +77,12 @@ def plans_of(capacity: int, used: int, time: float) -> Plans:
 class LocalEngine:
     """Moves the bodies of an engine on, each contact at its own steps, until it is given back."""
 
-    def __init__(self, engine: Engine, bodies: list[RigidBody], setting: Setting, time: float) -> None:
+    def __init__(
+        self, engine: Engine, bodies: list[RigidBody], joints: list[Joint], setting: Setting, time: float
+    ) -> None:  # fmt: skip
         self._begin(engine, setting, time)
-        self.flight = flight_of(engine, bodies, time)
+        self.flight = flight_of(engine, bodies, joints, time)
+        self.joints = joints_of(joints, bodies, setting.steps_per_contact, time)
         self.cells = cells_of(engine.bodies, engine.skin)
         self.record = new_record()
         self.plans: Plans
@@ -122,7 +132,8 @@ class LocalEngine:
             getattr(slots, name)[: len(used)] = getattr(pairs, name)[used]
         self.engine.pairs, self.engine.scratch = slots, self.engine.scratch_of(slots)
         self.reactions = new_reactions(capacity)
-        self.plans, self.agenda = plans_of(capacity, len(used), self.time), new_agenda(len(self.flight.time) + capacity)
+        self.plans = plans_of(capacity, len(used), self.time)
+        self.agenda = new_agenda(len(self.flight.time) + capacity + len(self.joints.first))
 
     def _enter(self, due: Floats) -> None:
         """Enter bodies and pairs in their lists, see enter_all."""
@@ -132,8 +143,9 @@ class LocalEngine:
     def _advance(self, due: Floats, end: float) -> int:
         schedule = Schedule(self.flight, self.plans, self.agenda, self.cells)
         return advance_locally(
-            self.engine.system(self.reactions), schedule, due, end, self.rules, self.setting.watched, self.record
-        )
+            self.engine.system(self.reactions), schedule, self.joints, due, end, self.rules, self.setting.watched,
+            self.record,
+        )  # fmt: skip
 
     def _widen(self) -> None:
         pairs, plans, agenda, reactions = self.pairs, self.plans, self.agenda, self.reactions

@@ -11,7 +11,7 @@ Source: [Lew-2003] for contacts at instants of their own.
 
 from lithobrake.compilation.compiled import kernel, large_kernel
 from lithobrake.dem.bodies.arrays import Bodies, Cores, Laws, Pairs, Planes, Reactions, Step, contact_radii
-from lithobrake.dem.bodies.vectors import add, minus, plus, put, row, scaled, way_between
+from lithobrake.dem.bodies.vectors import minus, plus, put, row, scaled, way_between
 from lithobrake.dem.local_stepping.agenda import (
     LONGER,
     SHORTER,
@@ -36,7 +36,9 @@ from lithobrake.dem.local_stepping.free_motion import (
     spin_of,
 )
 from lithobrake.dem.local_stepping.holding import is_stirred, let_go
+from lithobrake.dem.local_stepping.joints import Joints, renew_joint
 from lithobrake.dem.local_stepping.neighbour_search import LISTED, enter_all, search_neighbours
+from lithobrake.dem.local_stepping.pushes import count_contact, push
 from lithobrake.dem.narrow_phase.feature_list import ROUNDING_OF_RADIUS, STEPS_LISTED, renew_list, travelled
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.time_loop import contact_force, record_touch
@@ -49,6 +51,8 @@ NO_ROOM = 3
 STEPS_NEAR, NARROWEST = 10.0, 1e-3
 # Largest c dt + (w dt)^2 / 4 of one contact, see stability.py: several may push one body.
 STABLE_PART = 0.6
+# Looks at a joint after which its bodies are planned anew: about a period of the hinge.
+PLANNED_LOOKS = 200.0
 
 
 @kernel
@@ -186,31 +190,6 @@ def touch(pair: int, system: System, schedule: Schedule, passed: float, rules: R
 
 
 @kernel
-def push(bodies: Bodies, flight: Flight, body: int, sign: float, time: float, force: Vector, torque: Vector) -> None:
-    """Change the force and torque on a body, from a time [s] ago on in the mean. Writes to bodies."""
-    add(bodies.force, body, sign, force)
-    add(bodies.torque, body, sign, torque)
-    if not flight.held[body]:
-        add(bodies.velocity, body, sign * time * bodies.inverse_mass[body], force)
-        add(bodies.angular_momentum, body, sign * time, torque)
-
-
-@kernel
-def count_contact(bodies: Bodies, flight: Flight, body: int, planned: float, interval: float) -> None:
-    """Count a contact that has begun or ended; what touches nothing feels exactly nothing.
-
-    Writes to bodies and flight.
-    """
-    if planned == 0.0 and interval > 0.0:
-        flight.touching[body] += 1
-    elif planned > 0.0 and interval == 0.0:
-        flight.touching[body] -= 1
-        if flight.touching[body] == 0:
-            put(bodies.force, body, (0.0, 0.0, 0.0))
-            put(bodies.torque, body, (0.0, 0.0, 0.0))
-
-
-@kernel
 def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules) -> bool:
     """Look at a pair that is due and plan when to look again; tell whether there was room for its features.
 
@@ -258,32 +237,78 @@ def meet(pair: int, system: System, schedule: Schedule, now: float, rules: Rules
     return True
 
 
+@large_kernel
+def meet_joint(system: System, schedule: Schedule, joints: Joints, joint: int, now: float, rules: Rules) -> None:
+    """Look at a joint that is due and plan when to look again. Writes to system, schedule and joints."""
+    bodies, pairs = system.bodies, system.pairs
+    flight, plans, agenda, _ = schedule
+    members = (joints.first[joint], joints.second[joint])
+    for member in members:
+        fly_to(bodies, flight, member, now, rules)
+    renew_joint(bodies, flight, joints, joint, now - joints.last[joint])
+    joints.last[joint], joints.due[joint] = now, now + joints.interval[joint]
+    put_on(agenda, joint_item(bodies, pairs, joint), joints.due[joint])
+    for member in members:
+        # What swings less than it did is planned for less, after a while.
+        outdated = now - flight.planned[member] > PLANNED_LOOKS * joints.interval[joint]
+        if outdated or has_changed(bodies, flight, member, now, rules):
+            replan(bodies, pairs, flight, plans, agenda, member, now, rules)
+
+
 @kernel
-def record_contacts(
-    pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, watched: int, now: float, record: Floats
-) -> None:  # fmt: skip
-    """Note what the contacts of the watched body do to it now [s]. Writes to record."""
-    force, touched, entry = (0.0, 0.0, 0.0), False, flight.head[watched]
+def joint_item(bodies: Bodies, pairs: Pairs, joint: int) -> int:
+    """Return where a joint stands on the agenda: after all bodies and all slots for pairs."""
+    return len(bodies.mass) + len(pairs.first) + joint
+
+
+@kernel
+def concerns(pair: int, pairs: Pairs, flight: Flight, watched: int) -> bool:
+    """Tell whether a pair touches the watched body, or what is joined to it."""
+    first, second = pairs.first[pair], pairs.second[pair]
+    return flight.leader[first] == watched or (second >= 0 and flight.leader[second] == watched)
+
+
+@kernel
+def contacts_on(pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, body: int) -> tuple[bool, Vector]:
+    """Tell whether anything touches a body, and return the sum of the contact forces on it [N]."""
+    force, touched, entry = (0.0, 0.0, 0.0), False, flight.head[body]
     while entry >= 0:
         pair = entry >> 1
         if pairs.overlap[pair] > 0.0:
             touched = True
             force = plus(force, scaled(1.0 if entry & 1 else -1.0, row(reactions.force, pair)))
         entry = plans.link[entry]
+    return touched, force
+
+
+@kernel
+def record_contacts(
+    pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, joints: Joints, watched: int, now: float,
+    record: Floats,
+) -> None:  # fmt: skip
+    """Note what contacts do now [s] to the watched body and to what is joined to it. Writes to record."""
+    touched, force = contacts_on(pairs, reactions, flight, plans, watched)
+    for joint in range(len(joints.second)):
+        if flight.leader[joints.second[joint]] == watched:
+            also, more = contacts_on(pairs, reactions, flight, plans, joints.second[joint])
+            touched, force = touched or also, plus(force, more)
     record_touch(force, touched, now, record)
 
 
 @large_kernel
 def advance_locally(
-    system: System, schedule: Schedule, due: Floats, end: float, rules: Rules, watched: int, record: Floats
-) -> int:
+    system: System, schedule: Schedule, joints: Joints, due: Floats, end: float, rules: Rules, watched: int,
+    record: Floats,
+) -> int:  # fmt: skip
     """Do all that is due up to an instant [s] and move all bodies there; return LISTED, or what is lacking.
 
-    due: what is entered first, see enter_all, if anything. Writes to system, schedule and record.
+    due: what is entered first, see enter_all, if anything. Writes to system, schedule, joints and record.
     """
+    pairs, agenda, n = system.pairs, schedule.agenda, len(system.bodies.mass)
     if len(due) > 0:
         enter_all(system, schedule, due, rules)
-    pairs, agenda, n = system.pairs, schedule.agenda, len(system.bodies.mass)
+        for joint in range(len(joints.first)):
+            put_on(agenda, joint_item(system.bodies, pairs, joint), joints.due[joint])
     while agenda.size[0] > 0:
         item = agenda.heap[0]
         now = agenda.due[item]
@@ -296,9 +321,13 @@ def advance_locally(
                 return reason
             continue
         pair = item - n
+        if pair >= len(pairs.first):
+            meet_joint(system, schedule, joints, pair - len(pairs.first), now, rules)
+            continue
         if not meet(pair, system, schedule, now, rules):
             return NO_ROOM
-        if watched >= 0 and (pairs.first[pair] == watched or pairs.second[pair] == watched):
-            record_contacts(pairs, system.reactions, schedule.flight, schedule.plans, watched, now, record)
+        if watched >= 0 and concerns(pair, pairs, schedule.flight, watched):
+            flight, plans = schedule.flight, schedule.plans
+            record_contacts(pairs, system.reactions, flight, plans, joints, watched, now, record)
     fly_all_to(system.bodies, schedule.flight, end, rules)
     return LISTED

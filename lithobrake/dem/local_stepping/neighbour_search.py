@@ -12,7 +12,7 @@ from lithobrake.dem.bodies.vectors import dot, minus, nearest, row
 from lithobrake.dem.law.restitution import law_between
 from lithobrake.dem.local_stepping.agenda import Agenda, Plans, Schedule, plan_search, put_on, take_off
 from lithobrake.dem.local_stepping.cells import gather_near, move_to_cell, put_in_cell
-from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_to, place_at, spin_bound, turning_rate
+from lithobrake.dem.local_stepping.free_motion import Flight, Rules, fly_to, place_at, turning_rate, turning_speed
 from lithobrake.dem.narrow_phase.scratch import Scratch, System
 from lithobrake.dem.stepping.neighbours import are_near
 from lithobrake.dem.stepping.time_step_stability import HERTZ_DURATION
@@ -148,7 +148,7 @@ def is_near(
     turned = 0.0
     if not flight.held[other]:
         time = now - flight.time[other]
-        turned = bodies.turning_radius[other] * spin_bound(bodies, flight, other)
+        turned = turning_speed(bodies, flight, other)
         turned = time * (turned + time * turning_rate(bodies, flight, other, rules))
     shapes = (bodies.shape[parts[0]], bodies.shape[parts[1]])
     return are_near(bodies, cores, scratch, members, shapes, apart, rules.skin + turned)
@@ -205,7 +205,7 @@ def list_near(
 
     Writes to system and schedule.
     """
-    bodies, planes, cells = system.bodies, system.planes, schedule.cells
+    bodies, planes, cells, flight = system.bodies, system.planes, schedule.cells, schedule.flight
     has_room = True
     for at in range(-len(planes.offset), found):
         if at < 0:
@@ -213,7 +213,8 @@ def list_near(
                 has_room &= list_if_near(system, schedule, (body, at), (part, at), now, rules)
             continue
         other = cells.found[at]
-        if other == body:
+        # What is joined does not touch; a body is its own leader, or shares it with all that it is joined to.
+        if flight.leader[other] == flight.leader[body]:
             continue
         for its in range(bodies.part_start[other], bodies.part_start[other + 1]):
             has_room &= list_if_near(system, schedule, (body, other), (part, its), now, rules)

@@ -14,7 +14,7 @@ from lithobrake.dem.law.restitution import pair_law
 from lithobrake.dem.narrow_phase.feature_distance import INLINE_FEATURES
 from lithobrake.dem.narrow_phase.feature_list import BOUND_SLACK
 from lithobrake.dem.narrow_phase.scratch import Scratch, System, scratch_for
-from lithobrake.dem.stepping.neighbours import carry_over, neighbouring_pairs, with_more_overflow
+from lithobrake.dem.stepping.neighbours import carry_over, neighbouring_pairs, with_more_overflow, without_joined
 from lithobrake.dem.stepping.time_loop import (
     DONE,
     FEATURES_OVERFLOW,
@@ -171,7 +171,7 @@ class Engine:
     """Arrays of a world in which nothing is added any more.
 
     motion holds position, velocity, quaternion and angular_momentum and is advanced in place; pairs carry the history
-    of contacts; lost [3] (see Pairs) and watch_record count on across engines.
+    of contacts; lost [3] (see Pairs) and watch_record count on across engines. leader [body_count]: see leaders_of.
     """
 
     def __init__(
@@ -185,6 +185,7 @@ class Engine:
         watch_record: Floats,
         thread_count: int,
         period: Period,
+        leader: Integers,
     ) -> None:
         parts = parts_of(bodies)
         shapes, materials = shapes_of(parts), materials_of(parts, planes)
@@ -196,6 +197,7 @@ class Engine:
         self.scratch: Scratch
         self.team: Team | None
         self.lost, self.watch_record = lost, watch_record
+        self.leader = leader
         self.skin = SKIN * float(self.bodies.bounding_radius.min())
         refuse_short_period(period, self.bodies.bounding_radius, self.skin)
         self.thread_count, self.pool = thread_count, pool_of(thread_count)
@@ -285,5 +287,5 @@ class Engine:
         # Pairs that leave the list would take along what they have lost so far.
         self.book()
         pairs = neighbouring_pairs(self.bodies, self.cores, self.planes, self.scratch, self.skin)
-        self.gather(carry_over(self.pairs, pairs))
+        self.gather(carry_over(self.pairs, without_joined(pairs, self.leader)))
         self.bodies.travel_listed[:] = self.bodies.travel

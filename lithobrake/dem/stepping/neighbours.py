@@ -110,6 +110,12 @@ def neighbouring_pairs(bodies: Bodies, cores: Cores, planes: Planes, scratch: Sc
     return Neighbours(*(column[sorting] for column in found))
 
 
+def without_joined(between: Neighbours, leader: Integers) -> Neighbours:
+    """Return the pairs but for those of bodies that are joined, which have one leader [body_count]."""
+    apart = (between.second < 0) | (leader[between.first] != leader[np.maximum(between.second, 0)])
+    return between if apart.all() else Neighbours(*(column[apart] for column in between))
+
+
 def pairs_of_parts(part_start: Integers, first: Integers, second: Integers) -> Neighbours:
     """Return the pairs of all parts of first bodies with all of second ones, or with planes (second below 0)."""
     counts = np.diff(part_start)

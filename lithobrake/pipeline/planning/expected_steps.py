@@ -15,6 +15,7 @@ from lithobrake.pipeline.expansion.expansions import kept_inputs, points, replic
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.landings import drawn_rows, landing_values
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.touchdown.lander_bodies import add_lander
 from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.touchdown_model import landing
 from lithobrake.vocabulary.file_names import SCREENING_FILE
@@ -280,8 +281,5 @@ class ExpectedSoil:
         for grain in self.grains:
             world.add_body(grain, rock, (0.0, 0.0, 0.0))
         if lander is not None:
-            world.add_body(
-                lander.shape, lander.own_material, (0.0, 0.0, 0.0), mass=lander.mass, inertia=lander.inertia,
-                parts=lander.parts, centre_of_mass=lander.centre_of_mass,
-            )  # fmt: skip
+            add_lander(world, lander, np.zeros(3), np.zeros(3), (1.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
         return world.shortest_contact(speed)
