@@ -8,7 +8,7 @@ import numpy as np
 
 from lithobrake.dem import Part, RigidBody, inertia_about, new_body
 from lithobrake.vocabulary.array_types import Vector
-from lithobrake.vocabulary.field_errors import FieldError, field_number, field_numbers
+from lithobrake.vocabulary.field_errors import FieldError, field_number, field_numbers, value_within
 
 LARGEST_LIMIT = 0.5 * math.pi
 # First root of cos(x) cosh(x) = -1, by which a clamped beam bends.
@@ -36,7 +36,7 @@ class Hinge:
         for name, value, most, unit in (
             ("damping_ratio", self.damping_ratio, 1.0, ""), ("limit", self.limit, LARGEST_LIMIT, "rad"),
         ):  # fmt: skip
-            allowed = f"is a value from 0 to {most:.6g}"
+            allowed = value_within(0.0, most)
             if not 0.0 <= field_number(f"Hinge.{name}", value, allowed, unit) <= most:
                 raise FieldError(f"Hinge.{name}", value, allowed, unit=unit)
 

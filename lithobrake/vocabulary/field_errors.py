@@ -22,6 +22,11 @@ class FieldError(ValueError):
         return f"{self.field} is {value}; allowed {self.allowed}: {self.remedy}"
 
 
+def value_within(least: float, most: float) -> str:
+    """Say what is allowed where both limits are."""
+    return f"is a value from {least:g} to {most:.6g}"
+
+
 def field_number(field: str, value: Any, allowed: str, unit: str = "", *, above: float = -math.inf) -> float:
     """Return a finite number above a limit. Raises FieldError for another, and for text, true and false."""
     # One of NumPy is compared and shown as a plain one; a whole number beyond all floats is none.

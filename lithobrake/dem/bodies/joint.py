@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.dem.bodies.rigid_body import RigidBody, vector
 from lithobrake.vocabulary.array_types import Floats, Integers
-from lithobrake.vocabulary.field_errors import FieldError, field_number
+from lithobrake.vocabulary.field_errors import FieldError, field_number, value_within
 
 # Rate of the pin over that of the hinge. The pin lowers the frequency of the joint by half of one over its square,
 # 0.5 %; a stiffer one takes shorter steps.
@@ -56,7 +56,7 @@ def checked_joint_numbers(stiffness: float, damping_ratio: float, limit: float, 
         ("limit", limit, 0.0, LARGEST_LIMIT, "rad"),
         ("pin_ratio", pin_ratio, SMALLEST_PIN_RATIO, 1e3, ""),
     ):
-        allowed = f"is a value from {least:g} to {most:.6g}"
+        allowed = value_within(least, most)
         if not least <= field_number(f"World.join {name}", value, allowed, unit) <= most:
             raise FieldError(f"World.join {name}", value, allowed, unit=unit)
     if limit == 0.0:

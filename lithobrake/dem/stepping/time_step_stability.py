@@ -15,7 +15,7 @@ from lithobrake.dem.law.contact_motion import inverse_inertia_across, inverse_ma
 from lithobrake.dem.law.hertz_spring import dashpot_along
 from lithobrake.dem.law.restitution import PairLaw, law_between, pair_law
 from lithobrake.vocabulary.array_types import Floats, Vector
-from lithobrake.vocabulary.field_errors import FieldError, field_number
+from lithobrake.vocabulary.field_errors import FieldError, field_number, value_within
 from lithobrake.vocabulary.material_properties import Material
 
 # Steps in the shortest contact when a world chooses its own step.
@@ -67,7 +67,7 @@ class Clock:
 
         Raises ValueError for a duration that is not finite, or below 0.
         """
-        allowed = f"is a value from 0 to {LONGEST_RUN:g}"
+        allowed = value_within(0.0, LONGEST_RUN)
         duration = field_number("World.run duration", duration, allowed, "s")
         if not 0.0 <= duration <= LONGEST_RUN:
             raise FieldError("World.run duration", duration, allowed, unit="s")
