@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from harness import Row, command_line, origin, read_rows, revision, table, timed, write_document
+from harness import Row, command_line, origin, read_rows, table, timed, write_document
 
 COUNT, EVERY, RESAMPLES = 40, 3, 2000
 # The study of one ground had the name of the quick study before the ground could be unknown.
@@ -91,7 +91,7 @@ def main() -> None:
     kinds = dict.fromkeys(("checkout", "outcome"), str)
     rows = [row for path in tables.values() for row in read_rows(path, kinds)]
     command = "benchmarks/touchdowns_in_turn.py OLD . --beds BED_FOLDER --out FILE"
-    write_document(given.out.with_suffix(".json"), origin(command) | {"revision": revision()} | summary(rows))
+    write_document(given.out.with_suffix(".json"), origin(command) | summary(rows))
 
 
 if __name__ == "__main__":
