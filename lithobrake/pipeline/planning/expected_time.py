@@ -45,7 +45,7 @@ LOCAL_GRAIN, LOCAL_LOOK, MOVING = 2.7e-6, 7.2e-8, 0.5
 # Of that, where slow collisions take fewer steps.
 SLOW_PART = 0.42
 # A grain at rest in a journey's touchdown, each period [s].
-RESTING_GRAIN = 4.0e-5
+RESTING_GRAIN = 3.0e-5
 COMPILING = 60.0  # s
 # Flights and journeys over a body of FACETS facets [s]: by the table, once it is built, and by the facets' sum.
 FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4, 3.5e-3, 1.1e-3, 2.0e-2
