@@ -76,8 +76,12 @@ def _end_view(data: PageData, journeys: PageJourneys) -> list[LiveSection]:
 
 def _legend(data: PageData, ended: Iterable[str]) -> dict[str, str]:
     """The colour of each way for a flight or journey to end, by its words."""
-    words = {FlightStatus.FLYING.value: "still flying", **end_words(data.results.site)}
-    return {words.get(one, one): OUTCOME_COLOURS[one] for one in dict.fromkeys(ended)}
+    return {_said(data, one): OUTCOME_COLOURS[one] for one in dict.fromkeys(ended)}
+
+
+def _said(data: PageData, end: str) -> str:
+    """How a flight or journey ended, in words."""
+    return {FlightStatus.FLYING.value: "still flying", **end_words(data.results.site)}.get(end, end.replace("_", " "))
 
 
 def _with_marker(words: str, facts: Mapping[str, Any]) -> str:
@@ -167,7 +171,7 @@ def _ways(data: PageData) -> tuple[list[dict[str, Any]], dict[str, np.ndarray]]:
     starts = np.flatnonzero(np.append(True, np.diff(sample) != 0))
     counts = np.diff(np.append(starts, len(sample)))
     ways = [
-        {"words": f"lander {sample[start]}: {status[start]}".replace("_", " "), "first": int(start) * place.shape[1],
+        {"words": f"lander {sample[start]}: {_said(data, str(status[start]))}", "first": int(start) * place.shape[1],
          "flights": int(count)}
         for start, count in zip(starts, counts, strict=True)
     ]  # fmt: skip
