@@ -202,7 +202,9 @@ def bed_recipe(study: Study, index: int) -> "BedRecipe":
 
     study = on_ground(study, index)
     values, friction = study.touchdown_medians(), study.bed.pour_friction
-    material = grain(values)
+    # Grains of a pour meet far harder than they ever do on the body, where they rest without yielding: it knows one
+    # restitution.
+    material = replace(grain(values), yield_strength=0.0, restitution_speed=0.0)
     return BedRecipe(
         grain_count=study.bed.grain_count,
         sizes=grain_sizes(study),

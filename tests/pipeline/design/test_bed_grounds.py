@@ -105,3 +105,15 @@ def test_a_bed_is_poured_with_the_friction_of_its_packing() -> None:
 def test_a_friction_below_zero_is_refused_by_the_key_of_its_kind(value: Any) -> None:
     with pytest.raises(StudyError, match=r"ground\.kind\.gravel\.pour_friction"):
         study({"gravel": gravel(0.3) | {"pour_friction": value}})
+
+
+@pytest.mark.parametrize("key", ["yield_strength", "restitution_speed"])
+def test_grains_of_a_pour_keep_one_restitution(key: str) -> None:
+    tables = load_tables(QUICK)
+    tables |= {"bed": {"bed_count": BEDS}, "ground": {"kind": {"gravel": gravel(0.3)}}}
+    plain, falling = (
+        with_site_gravity(check_tables(tables | {"grain": tables["grain"] | more}, QUICK.parent))
+        for more in ({}, {key: 7e3})
+    )
+    assert falling.touchdown_medians()[f"grain.{key}"] == 7e3
+    assert bed_recipe(falling, 0) == bed_recipe(plain, 0)
