@@ -7,19 +7,17 @@ import numpy as np
 from lithobrake.compilation.compiled import kernel
 from lithobrake.dem.bodies.arrays import Bodies, Pairs
 from lithobrake.dem.bodies.vectors import arm_to, cross, dot, minus, plus, put, row, scaled
+from lithobrake.dem.local_stepping.approach import Approach, closing_speed, time_to_close
 from lithobrake.dem.local_stepping.cells import Cells
 from lithobrake.dem.local_stepping.free_motion import (
-    Approach,
     Flight,
     Rules,
     acceleration_of,
-    closing_speed,
     relative_surge,
     relative_weight,
     surface_speed,
     surge_bound,
     swept,
-    time_to_close,
     turning_rate,
     weight,
 )

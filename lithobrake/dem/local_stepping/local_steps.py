@@ -25,12 +25,10 @@ from lithobrake.dem.local_stepping.agenda import (
     put_on,
     replan,
 )
+from lithobrake.dem.local_stepping.approach import Approach, approach_of, closing_speed
 from lithobrake.dem.local_stepping.free_motion import (
-    Approach,
     Flight,
     Rules,
-    approach_of,
-    closing_speed,
     fly_all_to,
     fly_to,
     spin_of,
