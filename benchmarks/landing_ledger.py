@@ -9,6 +9,7 @@ error, and the largest.
 """
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from landing_ensembles import beds_of, drawn_study, draws
 
 from lithobrake.touchdown import Bed, Lander, Landing
 from lithobrake.touchdown.outcome_judge import OutcomeJudge
-from lithobrake.touchdown.simulation import look_interval, moving_reach, release, surface_speed
+from lithobrake.touchdown.simulation import moving_reach, release, run_until_looked_at
 
 GRAINS, WIDTH, BEDS = 200, 1.8, 2
 # Steps a contact, and shares of the lander's speed below which collisions take fewer, and grains are held.
@@ -38,11 +39,11 @@ def missing(bed: Bed, lander: Lander, landing: Landing, steps: float, resolved: 
     world.watch(number)
     judge = OutcomeJudge(bed, lander, landing, world, number, 0)
     reach = moving_reach(bed.grain_diameter, lander, landing)
+    contact = replace(landing.contact, steps_per_contact=steps, resolved_speed=resolved, held_speed=held)
+    landing = replace(landing, contact=contact)
     before = world.energy()["total"]
     while judge.ended is None:
-        speed = surface_speed(judge.motion, lander)
-        interval = look_interval(world, speed, lander, landing)
-        world.run_locally(interval, steps, resolved_speed=resolved * speed, held_speed=held * speed, reach=reach)
+        run_until_looked_at(world, judge.motion, lander, landing, bed.grain_diameter, reach)
         judge.look()
     return (world.energy()["total"] - before) / (0.5 * lander.mass * landing.speed**2)
 
