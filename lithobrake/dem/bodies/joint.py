@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.dem.bodies.rigid_body import RigidBody, vector
+from lithobrake.dem.bodies.rigid_body import RigidBody, inertia_about, vector
 from lithobrake.vocabulary.array_types import Floats, Integers
 from lithobrake.vocabulary.field_errors import FieldError, field_number, value_within
 
@@ -61,11 +61,6 @@ def checked_joint_numbers(stiffness: float, damping_ratio: float, limit: float, 
             raise FieldError(f"World.join {name}", value, allowed, unit=unit)
     if limit == 0.0:
         raise FieldError("World.join limit", limit, "is above 0", "make the part rigid instead", "rad")
-
-
-def inertia_about(body: RigidBody, arm: Floats) -> Floats:
-    """Return the inertia of a body [kg m2, 3 x 3] about a point at an arm [m] from its centre of mass."""
-    return body.inertia + body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
 
 
 def joint_law(joint: Joint, body: RigidBody) -> JointLaw:

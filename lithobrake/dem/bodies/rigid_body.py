@@ -172,18 +172,25 @@ class Assembly(NamedTuple):
     inertia: Floats  # kg m2, [3, 3], about that
 
 
+def inertia_about(body: RigidBody | Assembly, arm: Floats) -> Floats:
+    """Return the inertia of a body [kg m2, 3 x 3] about a point at an arm [m] from its centre of mass.
+
+    Source: [Landau-1976], section 32.
+    """
+    return body.inertia + body.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+
+
 def sum_of_parts(parts: Sequence[tuple[Shape, float]]) -> Assembly:
     """Return mass, centre of mass and inertia of homogeneous parts, each a shape and its mass [kg].
 
     All shapes are given in one frame; where parts overlap, the mass of both is there.
-    Source: [Landau-1976], section 32.
     """
     mass = sum(mass for _, mass in parts)
     centre = sum((mass * shape.centroid for shape, mass in parts), np.zeros(3)) / mass
     inertia = np.zeros((3, 3))
     for shape, own in parts:
-        way = shape.centroid - centre
-        inertia += shape.inertia_per_density * (own / shape.volume) + own * (way @ way * np.eye(3) - np.outer(way, way))
+        part = Assembly(own, shape.centroid, shape.inertia_per_density * (own / shape.volume))
+        inertia += inertia_about(part, part.centre - centre)
     return Assembly(mass, centre, inertia)
 
 
@@ -197,8 +204,7 @@ def rest_of(whole: Assembly, taken: Sequence[Assembly]) -> Assembly:
     centre = moment / mass
     inertia = np.zeros((3, 3))
     for sign, one in ((1.0, whole), *((-1.0, one) for one in taken)):
-        way = one.centre - centre
-        inertia += sign * (one.inertia + one.mass * (way @ way * np.eye(3) - np.outer(way, way)))
+        inertia += sign * inertia_about(one, one.centre - centre)
     return Assembly(mass, centre, 0.5 * (inertia + inertia.T))
 
 
