@@ -27,6 +27,8 @@ from numba.core.untyped_passes import InlineClosureLikes
 
 # Releases that tests/compilation ran with.
 KNOWN = {"Numba 0.68 with llvmlite 0.50"}
+# What some twenty kernels leave behind.
+NEW_OBJECTS = 200_000
 
 
 class FoldingBuilder(ir.IRBuilder):
@@ -281,12 +283,13 @@ class InnerKernel(CPUDispatcher):
 
 
 @contextmanager
-def without_garbage_collection() -> Iterator[None]:
-    """Leave what is compiled alone: the collector would look through all of it again and again, and find little."""
-    was_enabled = gc.isenabled()
-    gc.disable()
+def rare_garbage_collection() -> Iterator[None]:
+    """Collect garbage once so many objects are new: often, the collector would look through all that is compiled again
+    and again; never, what each kernel leaves behind would take 300 MB.
+    """
+    usual = gc.get_threshold()
+    gc.set_threshold(NEW_OBJECTS, *usual[1:])
     try:
         yield
     finally:
-        if was_enabled:
-            gc.enable()
+        gc.set_threshold(*usual)

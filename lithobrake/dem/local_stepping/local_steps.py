@@ -281,32 +281,35 @@ def contacts_on(pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans
 
 @kernel
 def record_contacts(
-    pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, joints: Joints, watched: int, now: float,
+    pairs: Pairs, reactions: Reactions, flight: Flight, plans: Plans, joints: Joints | None, watched: int, now: float,
     record: Floats,
 ) -> None:  # fmt: skip
     """Note what contacts do now [s] to the watched body and to what is joined to it. Writes to record."""
     touched, force = contacts_on(pairs, reactions, flight, plans, watched)
-    for joint in range(len(joints.second)):
-        if flight.leader[joints.second[joint]] == watched:
-            also, more = contacts_on(pairs, reactions, flight, plans, joints.second[joint])
-            touched, force = touched or also, plus(force, more)
+    if joints is not None:
+        for joint in range(len(joints.second)):
+            if flight.leader[joints.second[joint]] == watched:
+                also, more = contacts_on(pairs, reactions, flight, plans, joints.second[joint])
+                touched, force = touched or also, plus(force, more)
     record_touch(force, touched, now, record)
 
 
 @large_kernel
 def advance_locally(
-    system: System, schedule: Schedule, joints: Joints, due: Floats, end: float, rules: Rules, watched: int,
+    system: System, schedule: Schedule, joints: Joints | None, due: Floats, end: float, rules: Rules, watched: int,
     record: Floats,
 ) -> int:  # fmt: skip
     """Do all that is due up to an instant [s] and move all bodies there; return LISTED, or what is lacking.
 
+    joints: None where nothing is joined: for that type of it what stands below `is not None` is not compiled.
     due: what is entered first, see enter_all, if anything. Writes to system, schedule, joints and record.
     """
     pairs, agenda, n = system.pairs, schedule.agenda, len(system.bodies.mass)
     if len(due) > 0:
         enter_all(system, schedule, due, rules)
-        for joint in range(len(joints.first)):
-            put_on(agenda, joint_item(system.bodies, pairs, joint), joints.due[joint])
+        if joints is not None:
+            for joint in range(len(joints.first)):
+                put_on(agenda, joint_item(system.bodies, pairs, joint), joints.due[joint])
     while agenda.size[0] > 0:
         item = agenda.heap[0]
         now = agenda.due[item]
@@ -319,9 +322,10 @@ def advance_locally(
                 return reason
             continue
         pair = item - n
-        if pair >= len(pairs.first):
-            meet_joint(system, schedule, joints, pair - len(pairs.first), now, rules)
-            continue
+        if joints is not None:
+            if pair >= len(pairs.first):
+                meet_joint(system, schedule, joints, pair - len(pairs.first), now, rules)
+                continue
         if not meet(pair, system, schedule, now, rules):
             return NO_ROOM
         if watched >= 0 and concerns(pair, pairs, schedule.flight, watched):
