@@ -15,10 +15,12 @@ def two_grains(heights: tuple[float, float]) -> World:
     return world
 
 
-def step_locally() -> None:
-    """Take steps of each contact's own: so grains fall, and landers land."""
+def step_locally(joined: bool = False) -> None:
+    """Take steps of each contact's own: so grains fall, and landers land; joined: with parts on hinges."""
     # So far apart that nobody asks whether they are near: another process may compile that for common steps.
     world = two_grains((1.0, 9.0))
+    if joined:
+        world.join(0, 1, (0.0, 0.0, 5.0), 1.0)
     world.run_locally(1e-3, 25.0)
     world.contacts()
 

@@ -181,7 +181,7 @@ def hinge_problems(lander: LanderSection, radius: float, stepping: str) -> Itera
 
     radius: of the lander [m]. Raises ValueError for a mesh that is refused.
     """
-    if any(part.hinge is not None for part in lander.part.values()):
+    if lander.is_hinged:
         yield from _main_body_problems(lander)
     hinges = {name: part.hinge for name, part in lander.part.items() if part.hinge is not None}
     if hinges and stepping != "local":

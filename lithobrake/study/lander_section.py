@@ -142,6 +142,11 @@ class LanderSection(_LanderProperties, _LanderBody):
         return self.shape == "sphere" and not self.part and self.centre_of_mass is None
 
     @property
+    def is_hinged(self) -> bool:
+        """Whether a part hangs on a hinge."""
+        return any(part.hinge is not None for part in self.part.values())
+
+    @property
     def is_plain_box(self) -> bool:
         """Whether it has the symmetry of a box: no parts, and the centre of mass amid it."""
         # Six elements of the tensor have products of inertia, which take the mirror planes of the box away; three have

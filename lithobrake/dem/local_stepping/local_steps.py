@@ -322,10 +322,9 @@ def advance_locally(
                 return reason
             continue
         pair = item - n
-        if joints is not None:
-            if pair >= len(pairs.first):
-                meet_joint(system, schedule, joints, pair - len(pairs.first), now, rules)
-                continue
+        if joints is not None and pair >= len(pairs.first):
+            meet_joint(system, schedule, joints, pair - len(pairs.first), now, rules)
+            continue
         if not meet(pair, system, schedule, now, rules):
             return NO_ROOM
         if watched >= 0 and concerns(pair, pairs, schedule.flight, watched):

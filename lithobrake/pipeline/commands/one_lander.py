@@ -164,7 +164,7 @@ def bed_of(study: Study, number: int, progress: Progress) -> "Bed":
         recipe, path = bed_recipe(study, number), Path(folder) / "bed.h5"
 
         def pour() -> "Bed":
-            compile_kernels(lambda done, total, what, *_: progress(done / total, what))
+            compile_kernels(lambda done, total, what, *_: progress(done / total, what), joined=study.lander.is_hinged)
             return pour_bed(recipe, progress=progress)
 
         stored_or_poured(recipe, path, pour)

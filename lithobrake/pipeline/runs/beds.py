@@ -27,12 +27,12 @@ WHAT = "compiling kernels"
 _POLL_INTERVAL = 0.5
 
 
-def compile_kernels(tell: Callable[..., None], busy: int = 0) -> None:
+def compile_kernels(tell: Callable[..., None], busy: int = 0, joined: bool = False) -> None:
     """Compile what beds and landings call, unless it lies on disk; workers that start afterwards find it there.
 
     tell: called as the progress of a job, with how many kernels are done, of how many. busy: cores that compile
     something else. On one that idles a second process compiles a part of the engine: sooner done, at more CPU time,
-    as what both parts call is prepared twice.
+    as what both parts call is prepared twice. joined: for landers with parts on hinges.
     """
     from lithobrake.compilation.compiled import disk_cache, lies_on_disk, watched
     from lithobrake.dem.example_world import step_locally, step_together
@@ -41,10 +41,10 @@ def compile_kernels(tell: Callable[..., None], busy: int = 0) -> None:
     tell(0, 1, WHAT)
     with watched("dem", lambda done, total: tell(done, total, WHAT, f"{done} of {total} kernels")):
         if lies_on_disk(advance) or available_cores() < 2 + busy or not disk_cache("dem").keeps:
-            step_locally()
+            step_locally(joined)
         else:
             with _meanwhile(step_together):
-                step_locally()
+                step_locally(joined)
         step_together()
     tell(1, 1, WHAT)
 
@@ -107,7 +107,7 @@ def pour_at_once(job: Job, beds: "Mapping[int, tuple[BedRecipe, Path]]") -> None
     Raises ValueError that names the beds which cannot be poured, when all others are there.
     """
     # Workers that start afterwards find the kernels on the disk, where else each would compile them.
-    compile_kernels(job.progress, busy=compile_flights(job))
+    compile_kernels(job.progress, compile_flights(job), job.study.lander.is_hinged)
     failures = _pour_here(job, beds) if len(beds) == 1 else _pour_on_workers(job, beds)
     if failures:
         raise ValueError(_refusal(failures, job.study.bed_count))

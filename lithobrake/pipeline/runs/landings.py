@@ -182,7 +182,7 @@ def landing_values(design: DrawnDesign) -> Row:
 
 def land_once(job: Job) -> None:
     # Beds that come from the library have compiled nothing.
-    compile_kernels(job.progress)
+    compile_kernels(job.progress, joined=job.study.lander.is_hinged)
     _land(job, landing_values(job.design), FIRST)
 
 

@@ -50,11 +50,13 @@ print(shown[-1], all(0 <= done <= total for done, total, *_ in shown))
 
 COLD = """
 import lithobrake.pipeline.runs.beds as kernels
+from lithobrake.dem.local_stepping.local_steps import meet_joint
 from lithobrake.dem.stepping.time_loop import advance
 kernels.available_cores = lambda: 2
 shown = []
 kernels.compile_kernels(lambda *what: shown.append(what))
 (form,) = advance.signatures
+assert not meet_joint.within.overloads, "nothing is joined, and what joints call was compiled"
 print("found" if advance.stats.cache_hits else "compiled here")
 print(len({done for done, *_ in shown}))
 print(all(detail == f"{done} of {total} kernels" for done, total, _, *details in shown for detail in details))
