@@ -48,7 +48,7 @@ static uint64_t mixed(uint64_t x) {
 static double uniform(uint64_t seed, uint64_t draw, uint64_t place) {
     const uint64_t step = UINT64_C(0x9E3779B97F4A7C15);
     uint64_t start = mixed(mixed(seed + step) + step * (draw + 1));
-    return ((double)(mixed(start + step * (place + 1)) >> 11) + 0.5) * 0x1p-53;
+    return ((double)(mixed(start + step * (place + 1)) >> 12) + 0.5) * 0x1p-52;
 }
 
 /* ---- reading ---- */
@@ -134,14 +134,17 @@ static int read_block(block *one, const char *kind, char **at) {
     else one->numbers = calloc(one->count + 1, sizeof *one->numbers);
     if (!one->words && !one->numbers) return 0;
     for (size_t k = 0; k < one->count; k++) {
+        char *end = NULL;
         if (!(word = next_word(at))) return 0;
         if (is_names) one->words[k] = word;
-        else one->numbers[k] = strtod(word, NULL);
+        else one->numbers[k] = strtod(word, &end);
+        /* A locale with a decimal comma reads no point. */
+        if (end && *end) return 0;
     }
     return 1;
 }
 
-/* A block by its name; size[k] is compared where it is not 0, and set. A missing one marks the law as damaged. */
+/* A block by its name; a missing one marks the law as damaged. */
 static const block *found(const bounce_law *law, const char *name, int *damaged) {
     static const block none;
     for (int k = 0; k < law->block_count; k++)
@@ -208,7 +211,7 @@ bounce_law *bounce_law_open(const char *path, char why[BOUNCE_LAW_WHY]) {
     while ((kind = next_word(&at)))
         if (law->block_count == MOST_BLOCKS || !read_block(&law->blocks[law->block_count++], kind, &at)) break;
     if (kind || !bind(law)) {
-        snprintf(why, BOUNCE_LAW_WHY, "%s is damaged, or memory is short: export the law again", path);
+        snprintf(why, BOUNCE_LAW_WHY, "%s is damaged, memory is short, or the locale writes no decimal point", path);
         bounce_law_close(law);
         return NULL;
     }
@@ -257,13 +260,19 @@ void bounce_law_soil(const bounce_law *law, uint64_t seed, uint64_t journey, dou
         conditions[(size_t)law->soil_place[k]] = law->soil[row * law->soil_places + k];
 }
 
+static double squared(const double *vector, int count) {
+    double sum = 0;
+    for (int k = 0; k < count; k++) sum += vector[k] * vector[k];
+    return sum;
+}
+
 static double clipped(double value, double lower, double upper) {
     return value < lower ? lower : value > upper ? upper : value;
 }
 
 /* Terms of the attitude: how the ground's normal n and the direction of travel t lie as seen from the lander. */
 static void attitude_terms(const bounce_law *law, const double q[4], double *terms) {
-    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    double length = sqrt(squared(q, 4));
     double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
     double normal[3] = {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
     double travel[3] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)};
@@ -295,11 +304,10 @@ static void attitude_terms(const bounce_law *law, const double q[4], double *ter
     for (size_t k = 0; k < count; k++) terms[k] = clipped(terms[k], law->ranges[2 * k], law->ranges[2 * k + 1]);
 }
 
-/* Products of orthonormal polynomials of the inputs [terms]; the first are the standardised inputs. */
-static int terms_at(const bounce_law *law, const double *inputs, double *terms) {
+/* Products of orthonormal polynomials of the inputs [terms]; the first are the standardised inputs.
+   table: [inputs][degree + 1], to work in. */
+static void terms_at(const bounce_law *law, const double *inputs, double *table, double *terms) {
     size_t width = law->degree + 1;
-    double *table = malloc(law->inputs * width * sizeof *table);
-    if (!table) return 0;
     for (size_t i = 0; i < law->inputs; i++) {
         double germ = ((law->is_log[i] > 0 ? log(inputs[i]) : inputs[i]) - law->zero[i]) * law->slope[i];
         const double *center = law->center + i * law->degree, *spread = law->spread + i * law->degree;
@@ -313,8 +321,6 @@ static int terms_at(const bounce_law *law, const double *inputs, double *terms) 
         for (size_t i = 0; i < law->inputs; i++)
             terms[t] *= table[i * width + (size_t)law->indices[t * law->inputs + i]];
     }
-    free(table);
-    return 1;
 }
 
 /* Place of a random number among chances that need not sum to 1; they are accumulated in their place. */
@@ -367,7 +373,7 @@ static double most_speed(const bounce_law *law, const double *x, const double *s
     for (int k = 0; k < 5; k++)
         known[k] = law->bound_places[k] < 0 ? law->bound_medians[k] : x[(size_t)law->bound_places[k]];
     power = pow(ratio(known[3], law->bound_medians[3]), bound[5]) * pow(ratio(known[4], law->bound_medians[4]), bound[6]);
-    rate = spin ? sqrt(spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2]) : bound[7];
+    rate = spin ? sqrt(squared(spin, 3)) : bound[7];
     gravity = fabs(known[2]), slope = sin(known[1] * PI / 180);
     fallen = bound[1] + known[0] * bound[2] + 0.5 * gravity * slope * bound[2] * bound[2];
     *gyration = sqrt(bound[3] * power);
@@ -423,17 +429,21 @@ static void fill(bounce_law_rebound *rebound, const double *told) {
     memcpy(rebound->attitude, told + 4, 4 * sizeof(double));
 }
 
-static int checked(const bounce_law *law, const double *x, const double *attitude, int fit, char *why) {
+static int checked(const bounce_law *law, const double *x, const double *attitude, const double *spin, int fit,
+                   char *why) {
     double square = 1;
     if (fit < 0 || (size_t)fit >= law->fits) {
         snprintf(why, BOUNCE_LAW_WHY, "fit is %d; allowed: 0 to %d", fit, (int)law->fits - 1);
         return BOUNCE_LAW_WRONG;
     }
-    if (attitude)
-        square = attitude[0] * attitude[0] + attitude[1] * attitude[1] + attitude[2] * attitude[2]
-               + attitude[3] * attitude[3];
+    if (attitude) square = squared(attitude, 4);
     if (!(square > 0 && isfinite(square))) {
-        snprintf(why, BOUNCE_LAW_WHY, "attitude is no quaternion w, x, y, z that is not 0");
+        snprintf(why, BOUNCE_LAW_WHY, "attitude is (%g, %g, %g, %g); allowed: a quaternion w, x, y, z that is not 0",
+                 attitude[0], attitude[1], attitude[2], attitude[3]);
+        return BOUNCE_LAW_WRONG;
+    }
+    if (spin && !isfinite(squared(spin, 3))) {
+        snprintf(why, BOUNCE_LAW_WHY, "spin is (%g, %g, %g); allowed: finite numbers", spin[0], spin[1], spin[2]);
         return BOUNCE_LAW_WRONG;
     }
     for (size_t k = 0; k < law->conditions; k++)
@@ -445,52 +455,56 @@ static int checked(const bounce_law *law, const double *x, const double *attitud
     return BOUNCE_LAW_OK;
 }
 
+/* A quaternion, even over all rotations, of three uniform numbers, by the method of Shoemake. */
+static void any_attitude(const double *random, double attitude[4]) {
+    double near = sqrt(1 - random[0]), far = sqrt(random[0]);
+    double first = 2 * PI * random[1], second = 2 * PI * random[2];
+    attitude[0] = far * cos(second), attitude[1] = near * sin(first);
+    attitude[2] = near * cos(first), attitude[3] = far * sin(second);
+}
+
+static void leave(const bounce_law *law, size_t row, const double y[OUTPUTS], bounce_law_rebound *rebound) {
+    const double *left = law->left + 12 * row;
+    double level = y[SPEED] * cos(y[ELEVATION]);
+    rebound->row = (int)row;
+    rebound->velocity[0] = level * cos(left[0]);
+    rebound->velocity[1] = level * sin(left[0]);
+    rebound->velocity[2] = y[SPEED] * sin(y[ELEVATION]);
+    for (int k = 0; k < 3; k++) rebound->spin[k] = y[RATE] * left[1 + k];
+    fill(rebound, left + 4);
+}
+
 int bounce_law_draw(const bounce_law *law, const double *conditions, const double attitude[4], const double spin[3],
                     int fit, uint64_t seed, uint64_t draw, bounce_law_rebound *rebound, char why[BOUNCE_LAW_WHY]) {
-    size_t longest = law->rows > law->outcomes ? law->rows : law->outcomes, outcome, row;
-    double random[SOIL], any[4], told[8], y[OUTPUTS], *inputs, *terms, *chances;
-    int status = checked(law, conditions, attitude, fit, why), is_whole;
+    static const double unknown[8] = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    size_t longest = law->rows > law->outcomes ? law->rows : law->outcomes, outcome, row, of = (size_t)fit;
+    double random[SOIL], any[4], y[OUTPUTS], *inputs, *terms, *chances;
+    int status = checked(law, conditions, attitude, spin, fit, why);
     if (status) return status;
-    inputs = malloc((law->inputs + law->terms + longest) * sizeof *inputs);
     for (size_t k = 0; k < SOIL; k++) random[k] = uniform(seed, draw, k);
-    if (inputs) {
-        memcpy(inputs, conditions, law->plain * sizeof *inputs);
-        if (!attitude && law->inputs > law->plain) {
-            double near = sqrt(1 - random[ATTITUDE]), far = sqrt(random[ATTITUDE]);
-            double first = 2 * PI * random[ATTITUDE + 1], second = 2 * PI * random[ATTITUDE + 2];
-            any[0] = far * cos(second), any[1] = near * sin(first), any[2] = near * cos(first), any[3] = far * sin(second);
-            attitude = any;
-        }
-        if (law->inputs > law->plain) attitude_terms(law, attitude, inputs + law->plain);
-    }
-    terms = inputs + law->inputs, chances = terms + law->terms;
-    is_whole = inputs && terms_at(law, inputs, terms);
-    if (!is_whole) {
+    inputs = malloc((law->inputs * (law->degree + 2) + law->terms + longest) * sizeof *inputs);
+    if (!inputs) {
         snprintf(why, BOUNCE_LAW_WHY, "memory is short");
-        free(inputs);
         return BOUNCE_LAW_WRONG;
     }
-    outcome = drawn_outcome(law, terms, (size_t)fit, chances, random[OUTCOME]);
+    terms = inputs + law->inputs, chances = terms + law->terms;
+    memcpy(inputs, conditions, law->plain * sizeof *inputs);
+    if (!attitude) any_attitude(random + ATTITUDE, any);
+    if (law->inputs > law->plain) attitude_terms(law, attitude ? attitude : any, inputs + law->plain);
+    terms_at(law, inputs, chances + longest, terms);
+    outcome = drawn_outcome(law, terms, of, chances, random[OUTCOME]);
     memset(rebound, 0, sizeof *rebound);
     rebound->outcome = (int)outcome, rebound->row = -1;
     rebound->leaves = (double)outcome == law->leaves[0], rebound->captured = (double)outcome == law->captured[0];
     if (rebound->captured) {
         fill(rebound, law->rested + 8 * (size_t)(random[REST] * (double)law->resting));
     } else if (rebound->leaves) {
-        const double *left;
-        row = drawn_row(law, terms, (size_t)fit, chances, random[ROW]);
-        outputs_of(law, terms, row, (size_t)fit, random + NOISE, conditions, spin, y);
-        left = law->left + 12 * row;
-        rebound->row = (int)row;
-        rebound->velocity[0] = y[SPEED] * cos(y[ELEVATION]) * cos(left[0]);
-        rebound->velocity[1] = y[SPEED] * cos(y[ELEVATION]) * sin(left[0]);
-        rebound->velocity[2] = y[SPEED] * sin(y[ELEVATION]);
-        for (int k = 0; k < 3; k++) rebound->spin[k] = y[RATE] * left[1 + k];
-        fill(rebound, left + 4);
+        row = drawn_row(law, terms, of, chances, random[ROW]);
+        outputs_of(law, terms, row, of, random + NOISE, conditions, spin, y);
+        leave(law, row, y, rebound);
     } else {
-        for (int k = 0; k < 8; k++) told[k] = NAN;
         for (int k = 0; k < 3; k++) rebound->velocity[k] = rebound->spin[k] = NAN;
-        fill(rebound, told);
+        fill(rebound, unknown);
     }
     free(inputs);
     return BOUNCE_LAW_OK;

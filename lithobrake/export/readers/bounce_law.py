@@ -58,7 +58,7 @@ def uniform(seed: int, draw: int, place: int) -> float:
     Output number `draw` of a generator that starts at the mixed seed starts another; that gives output number `place`.
     """
     start = _mixed((_mixed((seed + _STEP) & _MASK) + _STEP * (draw + 1)) & _MASK)
-    return ((_mixed((start + _STEP * (place + 1)) & _MASK) >> 11) + 0.5) * 2.0**-53
+    return ((_mixed((start + _STEP * (place + 1)) & _MASK) >> 12) + 0.5) * 2.0**-52
 
 
 class BounceLaw:
@@ -69,9 +69,10 @@ class BounceLaw:
         self.path = Path(path)
         self.names: dict[str, list[str]] = {}
         self.numbers: dict[str, np.ndarray] = {}
+        words = _words(self.path)
         try:
-            self._read(iter(_words(self.path)))
-        except (IndexError, StopIteration, KeyError) as error:
+            self._read(iter(words))
+        except (StopIteration, ValueError) as error:
             raise ValueError(f"{path} is damaged ({error!r}): export the law again") from None
         self.conditions, self.outcomes = self.names["conditions"], self.names["outcomes"]
         self.units = dict(zip(self.conditions, self.names["units"], strict=True))
@@ -108,7 +109,7 @@ class BounceLaw:
         None: that of the median arrival. fit: keep one over a journey.
         Raises OutsideRangeError for a condition beyond its range, ValueError for one that is missing or no number.
         """
-        x = self._checked(conditions, fit)
+        x = self._checked(conditions, fit, spin)
         random = [uniform(seed, draw, place) for place in range(SOIL)]
         terms = self._terms(np.concatenate([x[: self._plain_count], self._attitude_terms(attitude, random[ATTITUDE:])]))
         outcome = _place(np.cumsum(self._chances(terms, fit)), random[OUTCOME])
@@ -131,11 +132,13 @@ class BounceLaw:
     def _plain_count(self) -> int:
         return len(self.numbers["is_log"]) - len(self.numbers["attitude_ranges"])
 
-    def _checked(self, conditions: Mapping[str, float], fit: int) -> np.ndarray:
+    def _checked(self, conditions: Mapping[str, float], fit: int, spin: Sequence[float] | None) -> np.ndarray:
         if set(conditions) != set(self.conditions):
             raise ValueError(f"conditions are {', '.join(conditions)}; give exactly {', '.join(self.conditions)}")
         if not 0 <= fit < self.fit_count:
             raise ValueError(f"fit is {fit}; allowed: 0 to {self.fit_count - 1}")
+        if spin is not None and not (len(spin) == 3 and all(map(math.isfinite, spin))):
+            raise ValueError(f"spin is {list(spin)}; allowed: three finite numbers")
         for name, (lower, upper) in self.ranges.items():
             if not lower <= conditions[name] <= upper:
                 raise OutsideRangeError(
