@@ -17,7 +17,6 @@ from typing import Any
 import numpy as np
 from Basilisk.simulation import gravityEffector, spacecraft
 from Basilisk.utilities import RigidBodyKinematics, SimulationBaseClass, macros
-
 from bounce_law_loop import GRAVITY_PARAMETER, RADIUS, RATE, conditions_of, frame_of
 
 STEP, LONGEST, SEED = 2.0, 48 * 3600.0, 1  # s, s
@@ -41,7 +40,9 @@ def simulation() -> tuple[Any, Any, Any]:
     return found, lander, body
 
 
-def set_state(lander: Any, position: np.ndarray, velocity: np.ndarray, into_space: np.ndarray, spin: np.ndarray) -> None:
+def set_state(
+    lander: Any, position: np.ndarray, velocity: np.ndarray, into_space: np.ndarray, spin: np.ndarray
+) -> None:
     """Give the hub a state: along axes that do not turn, but the angular velocity along those of the lander."""
     mrp = RigidBodyKinematics.C2MRP(into_space.T)
     hub = lander.hub

@@ -93,7 +93,9 @@ def main(folder: str) -> tuple[str, int]:
             before = float(np.linalg.norm(data.qvel[:3]))
             outcome, count = touch_down(law, data, soil, count), count + 1
             after = float(np.linalg.norm(data.qvel[:3]))
-            print(f"{data.time / 60.0:7.1f} min  x {data.qpos[0]:6.2f} m  {before:.3f} m/s to {after:.3f} m/s  {outcome}")
+            print(
+                f"{data.time / 60.0:7.1f} min  x {data.qpos[0]:6.2f} m  {before:.3f} m/s to {after:.3f} m/s  {outcome}"
+            )
     return outcome, count
 
 

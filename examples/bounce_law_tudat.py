@@ -11,11 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from bounce_law_loop import GRAVITY_PARAMETER, RADIUS, RATE, conditions_of, frame_of
 from tudatpy import numerical_simulation
 from tudatpy.math import root_finders
 from tudatpy.numerical_simulation import environment_setup, propagation_setup
-
-from bounce_law_loop import GRAVITY_PARAMETER, RADIUS, RATE, conditions_of, frame_of
 
 STEP, LONGEST, SEED = 20.0, 48 * 3600.0, 1  # s, s
 SPIN = np.array([0.0, 0.0, RATE])

@@ -5,6 +5,7 @@ import zlib
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,6 +39,7 @@ LAW = "bounce_law.txt"
 READERS = ("bounce_law.py", "bounce_law.h", "bounce_law.c")
 # Fits to other draws of beds that the file carries: enough for a standard deviation, at a tenth of the size of all.
 FITS = 20
+WIDTH = 110
 ALONG, ASIDE, DURATION, _, RISE = TO_REST
 # Tables that each fit has of its own, and those that all share.
 OF_FIT = (
@@ -49,24 +51,23 @@ OF_ALL = ("is_log", "germ_zero", "germ_slope", "center", "spread", "multi_indice
 OF_BOUND = ("height", "across", "time_limit", "smallest", "largest", "mass_power", "diameter_power")
 BOUND_INPUTS = (IMPACT_SPEED, GROUND[1], GROUND[0], "lander.mass", "lander.diameter")
 HEAD = (
-    "The law draws how a touchdown of a lander ends: the emulator of all touchdowns of a study's journeys. bounce_law.py",
-    "and bounce_law.c read this file and draw the same numbers. After this head it has blocks of words: names NAME COUNT,",
-    "or numbers NAME RANK SIZES, each followed by its values, the last index first to change. Its last line is the CRC-32",
-    "of all bytes before it.",
-    "",
-    "Frame of a touchdown: x along the incoming horizontal velocity, z along the outward normal, y = z cross x, so that y",
-    "is to the left of the motion seen from above. The normal is that of the ground that is touched, and without",
-    "horizontal velocity x is any direction. Nothing is mirrored: y keeps its sign. Velocities and spins are",
-    "against the ground, which turns with the body. Nothing is mirrored: a law has the sides of its landings.",
-    "Incidence: angle between velocity and inward normal. Gravity: size of the acceleration of what rests there, with",
-    "the centrifugal one, below 0 where it points outward; slope: its angle from the normal, in any direction.",
-    "Attitudes: unit quaternions w, x, y, z that turn the lander's axes, those of the study file, into the frame.",
-    "",
-    "Outputs of one draw: outcome; velocity [m/s]; spin [rad/s]; attitude at the end, of the landing whose scatter was",
-    "drawn, whatever the attitude of the arrival; duration [s] and way of the centre of mass [m] from first contact to",
-    "the end, of that landing. A captured lander has duration, way and attitude of a landing that was captured.",
-    "Attitudes of arrivals and ground are conditions; spin of the arrival, impact point and bed are part of the scatter.",
-)  # fmt: skip
+    "The law draws how a touchdown of a lander ends: the emulator of all touchdowns of a study's journeys. "
+    "bounce_law.py and bounce_law.c read this file and draw the same numbers. After this head it has blocks of words: "
+    "names NAME COUNT, or numbers NAME RANK SIZES, each followed by its values, the last index first to change. Its "
+    "last line is the CRC-32 of all bytes before it.",
+    "Frame of a touchdown: x along the incoming horizontal velocity, z along the outward normal of the ground that is "
+    "touched, y = z cross x, so that y is to the left of the motion seen from above. Without horizontal velocity x is "
+    "any direction. Nothing is mirrored: y keeps its sign. Velocities and spins are against the ground, which turns "
+    "with the body.",
+    "Incidence: angle between velocity and inward normal. Gravity: size of the acceleration of what rests there, "
+    "centrifugal acceleration included, below 0 where it points outward; slope: angle between it and the inward "
+    "normal, in any direction. Attitudes: unit quaternions w, x, y, z that turn the lander's axes, those of the study "
+    "file, into the frame.",
+    "Outputs of one draw: outcome; velocity [m/s]; spin [rad/s]; attitude at the end, of the landing whose scatter was "
+    "drawn, whatever the attitude of the arrival; duration [s] and way of the centre of mass [m] from first contact to "
+    "the end, of that landing. A captured lander has duration, way and attitude of a landing that was captured. "
+    "Attitude of the arrival and ground are conditions; impact point, bed and spin of the arrival are in the scatter.",
+)
 
 
 def write_bounce_law(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
@@ -102,7 +103,7 @@ def _head(results: StudyResults) -> list[str]:
     if ground.get("kind"):
         kinds = ", ".join(f"{number} {name}" for number, name in enumerate(ground["kind"]))
         said.append(f"Grounds by {GROUND_KIND}: {kinds}. A journey has one: draw it with the soil.")
-    return [f"# {line}".rstrip() for line in said]
+    return [f"# {line}" for paragraph in said for line in wrap(paragraph, WIDTH, break_on_hyphens=False)]
 
 
 def _blocks(results: StudyResults, explorer: "ExplorerTables") -> list[str]:
@@ -140,16 +141,15 @@ def _numbers(name: str, values: Array) -> list[str]:
     """A block of numbers, to the last bit, a line for each row."""
     sizes = " ".join(map(str, values.shape))
     rows = values.reshape(-1, values.shape[-1]) if values.size else values.reshape(0, 1)
-    return [f"numbers {name} {values.ndim} {sizes}", *(" ".join(repr(value).removesuffix(".0") for value in row) for row in rows.tolist())]
+    return [
+        f"numbers {name} {values.ndim} {sizes}",
+        *(" ".join(repr(value).removesuffix(".0") for value in row) for row in rows.tolist()),
+    ]
 
 
-def _conditions(
-    model: "Emulator", explorer: "ExplorerTables", touchdowns: Table
-) -> dict[str, tuple[float, float]]:
+def _conditions(model: "Emulator", explorer: "ExplorerTables", touchdowns: Table) -> dict[str, tuple[float, float]]:
     """What the law reads of a touchdown, each with its range: first the inputs of the emulator, but its attitude's."""
-    found = {
-        name: law.support for name, law in model.runs.inputs.items() if name not in explorer.attitude_inputs
-    }
+    found = {name: law.support for name, law in model.runs.inputs.items() if name not in explorer.attitude_inputs}
     # What was the same in all touchdowns is no input of the emulator, and the law holds for no other.
     others = [name for name in OF_TOUCHDOWN if name not in found]
     return found | {
@@ -190,9 +190,9 @@ def _rows(model: "Emulator", touchdowns: Table) -> dict[str, Array]:
 
 
 def _told(touchdowns: Table) -> Array:
-    """Duration and way, 0 where landings do not tell them, and attitude at the end, NaN where they do not, [count, 8]."""
+    """Duration and way, 0 where landings lack them, and attitude at the end, NaN where they lack it, [count, 8]."""
     absent = np.full(touchdowns.row_count, np.nan)
-    known = {name: touchdowns[name] if name in touchdowns else absent for name in (*TO_REST, *ORIENTATION_OUT)}
+    known = {name: touchdowns.get(name, absent) for name in (*TO_REST, *ORIENTATION_OUT)}
     motion = [np.nan_to_num(known[name]) for name in (DURATION, ALONG, ASIDE, RISE)]
     return np.column_stack([*motion, *(known[name] for name in ORIENTATION_OUT)])
 

@@ -39,7 +39,7 @@ LARGEST = {IMPACT_INCIDENCE: 90.0, GROUND[1]: 90.0}
 
 
 def trained_range(name: str, lower: float, upper: float) -> tuple[float, float]:
-    """The range in which an emulator has an answer of an input of OF_TOUCHDOWN that its touchdowns had between two ends."""
+    """The range in which an emulator has an answer, of an input of OF_TOUCHDOWN that its runs had between two ends."""
     if name in LARGEST:
         return max(lower - DEGREES, 0.0), min(upper + DEGREES, LARGEST[name])
     # Gravity below 0 points outward.

@@ -1,4 +1,4 @@
-"""Emulators of touchdowns of every kind that a bounce law may be of, fitted in small, and laws read in both languages."""
+"""Emulators of every kind that a bounce law may be of, fitted in small, and laws read in both languages."""
 
 import importlib.util
 import subprocess
@@ -23,9 +23,19 @@ from lithobrake.results.table import ExplorerAttitude, Table
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, Quantity
 
 RUNS, BEDS = 90, 9
-OUTPUTS = ("speed_out", "elevation_out", "spin_out", "azimuth_out", "spin_out_x", "spin_out_y", "spin_out_z", "duration")
+OUTPUTS = (
+    "speed_out",
+    "elevation_out",
+    "spin_out",
+    "azimuth_out",
+    "spin_out_x",
+    "spin_out_y",
+    "spin_out_z",
+    "duration",
+)
 GIVEN: dict[str, Distribution] = {
-    "grain.friction": Normal(0.6, 0.1), "impact.speed": LogUniform(0.02, 0.2), "impact.incidence_deg": Uniform(0.0, 60.0),
+    "grain.friction": Normal(0.6, 0.1), "impact.speed": LogUniform(0.02, 0.2),
+    "impact.incidence_deg": Uniform(0.0, 60.0),
 }  # fmt: skip
 BOUND = {
     "height": 0.3, "across": 0.4, "time_limit": 0.0, "smallest": 0.002, "largest": 0.005, "mass_power": -1.0,
@@ -54,7 +64,9 @@ def known_results(lander: str) -> Results:
     inputs = GIVEN | ranges
     x = np.column_stack([law.ppf(random.random(RUNS)) for law in inputs.values()])
     y, upper = _landings(x, random)
-    outcome = np.where(random.random(RUNS) < 0.15, "captured", np.where(random.random(RUNS) < 0.1, "time_limit", "clear"))
+    outcome = np.where(
+        random.random(RUNS) < 0.15, "captured", np.where(random.random(RUNS) < 0.1, "time_limit", "clear")
+    )
     y[outcome != "clear"] = np.nan
     model = emulator.fit(
         inputs, x, y, groups=np.arange(RUNS) % BEDS, outcome=outcome, lower=[0.0] * 3 + [-np.inf] * 5, upper=upper,
@@ -88,7 +100,8 @@ def _landings(x: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, n
     allowed = np.sqrt(speed**2 + 0.005 * 0.05 + 2e-5)
     share = 0.5 * np.exp(-friction + 0.01 * incidence - random.gamma(2.0, 0.3, RUNS))
     axis = random.standard_normal((RUNS, 3))
-    y = np.column_stack([share * speed, random.uniform(0.1, 1.4, RUNS), random.uniform(0.05, 0.3, RUNS) * allowed / 0.045,
+    rate = random.uniform(0.05, 0.3, RUNS) * allowed / 0.045
+    y = np.column_stack([share * speed, random.uniform(0.1, 1.4, RUNS), rate,
                          random.uniform(-3.0, 3.0, RUNS), axis, random.uniform(5.0, 60.0, RUNS)])  # fmt: skip
     upper = np.full(y.shape, np.inf)
     upper[:, 0], upper[:, 1], upper[:, 2] = allowed, 0.5 * np.pi, allowed / np.sqrt(0.002)

@@ -1,10 +1,12 @@
 """A bounce law draws what the emulator of its study draws, in Python and in C, and refuses what it does not know."""
 
+import runpy
 import shutil
 import zlib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -24,8 +26,20 @@ from lithobrake.vocabulary.quantities import ORIENTATION_OUT
 
 from ..pipeline.few_terms import few_terms
 from ..quick_studies import quick_studies
-from .known_laws import TERMS, Results, compiled, given_numbers, known_results, lines_of, middle, of_model, reader, written
+from .known_laws import (
+    TERMS,
+    Results,
+    compiled,
+    given_numbers,
+    known_results,
+    lines_of,
+    middle,
+    of_model,
+    reader,
+    written,
+)
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 SEED, DRAWS = 3, 200
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
 NONE = [np.nan]
@@ -192,7 +206,9 @@ def test_laws_of_every_kind_draw_as_their_emulators(
         given = asked(law, DRAWS)
         # Neither in the emulator nor elsewhere than about what all touchdowns had.
         assert law.ranges["surface.gravity"] == pytest.approx((3.6e-5, 4.4e-5))
-        inputs = {name: np.array([one[name] for one, _, _ in given]) for name in own.emulator.inputs if name in law.units}
+        inputs = {
+            name: np.array([one[name] for one, _, _ in given]) for name in own.emulator.inputs if name in law.units
+        }
         if terms is not None:
             turned = Rotation.from_quat(np.array([one for _, one, _ in given]), scalar_first=True).as_matrix()
             found = terms.at(turned[:, 2], turned[:, 0])
@@ -312,3 +328,38 @@ def test_a_study_without_an_emulator_of_touchdowns_is_refused(delivered: StudyRe
         export_study(delivered, tmp_path, ["bounce-law"])
     assert not list(tmp_path.iterdir())
 
+
+def test_landers_of_a_loop_of_its_own_end_as_those_of_the_study(folder: Path, results: StudyResults) -> None:
+    """The body of the example is a sphere without a partner, so ends agree roughly."""
+    ends = runpy.run_path(str(EXAMPLES / "bounce_law_loop.py"))["main"](str(folder), 60)
+    assert results.results.emulated is not None
+    rests = results.results.emulated.ends["at_rest"].share.value
+    # Two standard errors of a fraction of 60 landers are 0.08 at 0.9.
+    assert ends["captured"] / 60 == pytest.approx(rests, abs=0.15)
+    assert ends["outside the range of the law"] < 6
+
+
+def test_mujoco_goes_on_with_the_state_of_the_law(folder: Path) -> None:
+    """A touchdown that gives back what it was asked about leaves the state as it was: frames and axes fit."""
+    mujoco = pytest.importorskip("mujoco")
+    example = runpy.run_path(str(EXAMPLES / "bounce_law_mujoco.py"))
+    data = mujoco.MjData(mujoco.MjModel.from_xml_string(example["MODEL"]))
+    data.qpos[3:7] = np.array([3.0, 5.0, -2.0, 7.0]) / np.sqrt(87.0)
+    data.qvel[:] = (0.02, 0.01, -0.05, 0.1, 0.2, 0.3)
+    before = np.concatenate([data.qpos, data.qvel])
+    example["touch_down"](Unchanged(), data, {}, 0)
+    assert np.concatenate([data.qpos, data.qvel]) == pytest.approx(before, abs=1e-14)
+    assert example["main"](str(folder))[1] > 0
+
+
+class Unchanged:
+    """A law by which a touchdown changes nothing."""
+
+    ranges: ClassVar = {"impact.speed": (0.0, 1.0)}
+
+    def draw(self, conditions: dict[str, float], seed: int, draw: int, attitude: Any, spin: Any) -> SimpleNamespace:
+        """Give back the arrival."""
+        incidence = np.radians(conditions["impact.incidence_deg"])
+        velocity = conditions["impact.speed"] * np.array([np.sin(incidence), 0.0, -np.cos(incidence)])
+        state = {"velocity": velocity, "spin": np.array(spin), "attitude": np.array(attitude), "way": np.zeros(3)}
+        return SimpleNamespace(outcome="clear", duration=0.0, **state)

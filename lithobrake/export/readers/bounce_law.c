@@ -120,6 +120,8 @@ static char *next_word(char **at) {
 
 static int read_block(block *one, const char *kind, char **at) {
     int is_names = !strcmp(kind, "names"), rank = 1;
+    /* No block has more words than what is left has letters. */
+    size_t most = strlen(*at);
     char *word = next_word(at);
     if (!word || (!is_names && strcmp(kind, "numbers"))) return 0;
     one->name = word;
@@ -128,7 +130,8 @@ static int read_block(block *one, const char *kind, char **at) {
     one->count = 1;
     for (int k = 0; k < rank; k++) {
         if (!(word = next_word(at))) return 0;
-        one->count *= one->size[k] = (size_t)strtoul(word, NULL, 10);
+        one->size[k] = (size_t)strtoul(word, NULL, 10);
+        if (one->size[k] > most || (one->count *= one->size[k]) > most) return 0;
     }
     if (is_names) one->words = calloc(one->count + 1, sizeof *one->words);
     else one->numbers = calloc(one->count + 1, sizeof *one->numbers);
@@ -157,6 +160,25 @@ static const double *numbers(const bounce_law *law, const char *name, size_t cou
     const block *one = found(law, name, damaged);
     if (!one->numbers || one->count != count) *damaged = 1;
     return one->numbers;
+}
+
+/* Whether numbers that count something are from least up to, not including, end. */
+static int all_within(const double *numbers, size_t count, double least, size_t end) {
+    for (size_t k = 0; k < count; k++)
+        if (!(numbers[k] >= least && numbers[k] < (double)end)) return 0;
+    return 1;
+}
+
+/* Whether numbers that count something fit the sizes of the others. */
+static int counts_fit(const bounce_law *law) {
+    size_t of_attitude = law->kind[1] != 0 ? 3 : law->kind[0] != 0 ? 6 + 2 * law->axes : 3 * law->axes;
+    if (law->axes && law->kind[0] != 0 && law->kind[1] == 0 && law->axes < 2) return 0;
+    return law->inputs - law->plain == (law->axes ? of_attitude : 0)
+        && all_within(law->indices, law->terms * law->inputs, 0, law->degree + 1)
+        && all_within(law->soil_place, law->soil_places, 0, law->conditions)
+        && all_within(law->bound_places, 5, -1, law->conditions) && all_within(law->leaves, 1, 0, law->outcomes)
+        && all_within(law->captured, 1, -1, law->outcomes) && (law->captured[0] < 0 || law->resting) && law->rows
+        && law->soils;
 }
 
 static int bind(bounce_law *law) {
@@ -191,7 +213,7 @@ static int bind(bounce_law *law) {
     GET(bound_places, "bound_places", 5), GET(bound_medians, "bound_medians", 5);
     GET(soil, "soils", law->soils * law->soil_places), GET(soil_place, "soil_places", law->soil_places);
 #undef GET
-    return !damaged;
+    return !damaged && counts_fit(law);
 }
 
 bounce_law *bounce_law_open(const char *path, char why[BOUNCE_LAW_WHY]) {

@@ -3,7 +3,7 @@
     law = BounceLaw("bounce_law.txt")
     rebound = law.draw(law.soil(seed=1, journey=0) | {"impact.speed": 0.05, ...}, seed=1, draw=0)
 
-The head of the law says what it was made from, and has its frame, units and ranges. bounce_law.c draws the same numbers.
+The head of the law says what it was made from, and has its frame, units and ranges. bounce_law.c draws the same.
 
 Copyright (c) 2026, lithobrake contributors. SPDX-License-Identifier: BSD-3-Clause
 """
@@ -53,7 +53,8 @@ def _mixed(x: int) -> int:
 
 
 def uniform(seed: int, draw: int, place: int) -> float:
-    """The number between 0 and 1, neither included, at a place of a draw: SplitMix64, counted, not stepped.
+    """The number between 0 and 1, neither included, at a place of a draw: SplitMix64 [Steele-2014], counted, not
+    stepped.
 
     Output number `draw` of a generator that starts at the mixed seed starts another; that gives output number `place`.
     """
@@ -190,10 +191,12 @@ class BounceLaw:
         self, terms: np.ndarray, row: int, fit: int, random: Sequence[float], x: np.ndarray,
         spin: Sequence[float] | None,
     ) -> list[float]:  # fmt: skip
-        """Speed [m/s], elevation [rad] and rate of spin [rad/s]: location and scale at the inputs, residuals of a row."""
+        """Speed [m/s], elevation [rad], rate of spin [rad/s]: location and scale at the inputs, residuals of a row."""
         n = self.numbers
         size = n["smoothing_size"][fit]
-        scatter = (n["rows"][fit, row] + size * (n["smoothing_root"][fit] @ _normals(random))) / math.sqrt(1.0 + size**2)
+        scatter = (n["rows"][fit, row] + size * (n["smoothing_root"][fit] @ _normals(random))) / math.sqrt(
+            1.0 + size**2
+        )
         location, scale = (n[name][fit, 0] + terms @ n[name][fit, 1:] for name in ("location", "log_scale"))
         coordinate = location + np.exp(np.clip(scale, *n["scale_limits"][fit])) * scatter
         upper, gyration = n["output_upper"].copy(), 0.0
@@ -245,14 +248,17 @@ def _place(ends: np.ndarray, random: float) -> int:
 
 
 def _normals(random: Sequence[float]) -> np.ndarray:
-    """Three normal numbers of four uniform ones, by the method of Box and Muller."""
+    """Three normal numbers of four uniform ones, by the method of Box and Muller [Box-1958]."""
     one, other = (math.sqrt(-2.0 * math.log(random[k])) for k in (0, 2))
     turn, last = 2.0 * math.pi * random[1], 2.0 * math.pi * random[3]
     return np.array([one * math.cos(turn), one * math.sin(turn), other * math.cos(last)])
 
 
 def _any_attitude(first: float, second: float, third: float) -> tuple[float, float, float, float]:
-    """Quaternion w, x, y, z, even over all rotations, of three uniform numbers, by the method of Shoemake."""
+    """Quaternion w, x, y, z, even over all rotations, of three uniform numbers, by the method of Shoemake.
+
+    Source: [Shoemake-1992].
+    """
     near, far, one, other = math.sqrt(1.0 - first), math.sqrt(first), 2.0 * math.pi * second, 2.0 * math.pi * third
     return far * math.cos(other), near * math.sin(one), near * math.cos(one), far * math.sin(other)
 
@@ -273,7 +279,7 @@ def _ratio(value: float, median: float) -> float:
 
 
 def _from_coordinate(coordinate: float, lower: float, upper: float, distant: float) -> float:
-    """An output of its coordinate: a logit between two bounds, a logarithm beyond one, itself where they are distant."""
+    """An output of its coordinate: a logit between two bounds, a logarithm beyond one, itself if they are distant."""
     has_lower, has_upper = math.isfinite(lower), math.isfinite(upper)
     limited, y = min(max(coordinate, -700.0), 700.0), coordinate
     if not distant and has_lower and has_upper:
