@@ -12,7 +12,7 @@ import numpy as np
 
 from lithobrake.export.flown import ExportOptions
 from lithobrake.files.atomic import write_whole
-from lithobrake.results import StudyResults, Table
+from lithobrake.results import NamedEmulator, StudyResults, Table
 from lithobrake.results.named_emulator import AZIMUTH, trained_range
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.array_types import Array
@@ -30,7 +30,6 @@ from lithobrake.vocabulary.quantities import (
 )
 
 if TYPE_CHECKING:
-    from lithobrake.emulator import Emulator
     from lithobrake.results.table import ExplorerTables
 
 # The first line of the file; readers of another version refuse it.
@@ -108,16 +107,15 @@ def _head(results: StudyResults) -> list[str]:
 
 def _blocks(results: StudyResults, explorer: "ExplorerTables") -> list[str]:
     """All names and numbers of the law."""
-    from lithobrake.emulator import law_tables
-
-    model, touchdowns = results.emulator.model, results.touchdowns
-    own, columns = law_tables([model]), list(model.runs.modelled)
-    conditions = _conditions(model, explorer, touchdowns)
+    emulator, touchdowns = results.emulator, results.touchdowns
+    own, runs = emulator.tables, emulator.model.runs
+    columns = list(runs.modelled)
+    conditions = _conditions(emulator, explorer, touchdowns)
     units = input_units()
     names = {
         "conditions": list(conditions),
         "units": [units.get(name) or PURE for name in conditions],
-        "outcomes": list(model.outcome_names),
+        "outcomes": list(runs.outcome_names),
     }
     fits = {name: np.concatenate([own[name], explorer.tables[name][:FITS]]) for name in OF_FIT}
     numbers = {
@@ -125,10 +123,10 @@ def _blocks(results: StudyResults, explorer: "ExplorerTables") -> list[str]:
         "upper": [upper for _, upper in conditions.values()],
         **{name: own[name] for name in OF_ALL},
         **fits,
-        "output_lower": model.runs.lower[0, columns],
-        "output_upper": model.runs.upper[0, columns],
-        **_outcomes(model),
-        **_rows(model, touchdowns),
+        "output_lower": runs.lower[0, columns],
+        "output_upper": runs.upper[0, columns],
+        "outcome_places": _outcome_places(emulator),
+        **_rows(emulator, touchdowns),
         **_attitude(explorer),
         **_bound(explorer, list(conditions)),
         **_soils(touchdowns, explorer, conditions),
@@ -147,9 +145,17 @@ def _numbers(name: str, values: Array) -> list[str]:
     ]
 
 
-def _conditions(model: "Emulator", explorer: "ExplorerTables", touchdowns: Table) -> dict[str, tuple[float, float]]:
+def _conditions(
+    emulator: NamedEmulator, explorer: "ExplorerTables", touchdowns: Table
+) -> dict[str, tuple[float, float]]:
     """What the law reads of a touchdown, each with its range: first the inputs of the emulator, but its attitude's."""
-    found = {name: law.support for name, law in model.runs.inputs.items() if name not in explorer.attitude_inputs}
+    least = np.finfo(float).tiny
+    found = {
+        # There is no logarithm of zero.
+        name: (max(law.support[0], least) if law.logarithmic else law.support[0], law.support[1])
+        for name, law in emulator.model.runs.inputs.items()
+        if name not in explorer.attitude_inputs
+    }
     # What was the same in all touchdowns is no input of the emulator, and the law holds for no other.
     others = [name for name in OF_TOUCHDOWN if name not in found]
     return found | {
@@ -157,20 +163,20 @@ def _conditions(model: "Emulator", explorer: "ExplorerTables", touchdowns: Table
     }
 
 
-def _outcomes(model: "Emulator") -> dict[str, list[int]]:
-    """Places of the outcomes that have outputs; -1 for one that no touchdown had."""
-    names = model.outcome_names
-    captured = TouchdownOutcome.CAPTURED
-    return {"leaves": [model.runs.output_outcome], "captured": [names.index(captured) if captured in names else -1]}
+def _outcome_places(emulator: NamedEmulator) -> list[int]:
+    """Places of the outcomes with which a lander leaves, and is captured; -1 for one that no touchdown had."""
+    names = emulator.model.outcome_names
+    rests = TouchdownOutcome.CAPTURED
+    return [emulator.model.runs.output_outcome, names.index(rests) if rests in names else -1]
 
 
-def _rows(model: "Emulator", touchdowns: Table) -> dict[str, Array]:
+def _rows(emulator: NamedEmulator, touchdowns: Table) -> dict[str, Array]:
     """What is drawn with its landing unchanged.
 
     leaving_rows [row_count, 12]: azimuth, axis of the spin, duration, way and attitude; rest_rows [count, 8] of
     captured landers: duration, way and attitude.
     """
-    runs, outcome = model.runs, touchdowns["outcome"]
+    runs, outcome = emulator.model.runs, touchdowns["outcome"]
     left, rests = (touchdowns.where(outcome == name) for name in (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED))
     drawn = dict(zip(runs.output_names, runs.y.T, strict=True))
     # The table and the emulator have the same landings in the same order, or no attitude would be that of its row.

@@ -107,6 +107,13 @@ class NamedEmulator:
         return html_table("Inputs of the emulator", heads, rows) + self.model._repr_html_()
 
     @property
+    def tables(self) -> dict[str, np.ndarray]:
+        """The emulator as plain tables, for programs in other languages (`lithobrake.emulator.law_tables`)."""
+        from lithobrake.emulator import law_tables
+
+        return law_tables([self.model])
+
+    @property
     def _modelled(self) -> list[str]:
         return [self.model.output_names[column] for column in self.model.runs.modelled]
 

@@ -282,7 +282,9 @@ def summed(text: str) -> str:
     ({"impact.speed": 9.0}, "impact.speed is 9 m/s, but the law holds from"),
     ({"impact.speed": 1e-9}, "impact.speed is 1e-09 m/s, but the law holds from"),
     ({"surface.gravity": 9.81}, "surface.gravity is 9.81 m/s2"),
-    ({"grain.friction": float("nan")}, "grain.friction is nan"),
+    ({"grain.friction": float("nan")}, "grain.friction is nan, but the law"),
+    ({"grain.friction": float("inf")}, "grain.friction is inf, but the law"),
+    ({"grain.friction": 0.1}, "grain.friction is 0.1, but the law holds from 0.5 to 0.9"),
 ])  # fmt: skip
 def test_conditions_outside_the_range_are_refused(law: Any, folder: Path, change: dict[str, float], said: str) -> None:
     with pytest.raises(ValueError, match=said) as refused:

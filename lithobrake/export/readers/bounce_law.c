@@ -34,7 +34,7 @@ struct bounce_law {
     char **condition, **unit, **outcome;
     const double *lower, *upper, *is_log, *zero, *slope, *center, *spread, *indices, *widths, *row_inputs, *distant;
     const double *location, *log_scale, *limits, *residuals, *weights, *smoothing, *root, *intercepts, *slopes, *never;
-    const double *output_lower, *output_upper, *leaves, *captured, *left, *rested, *axis, *kind, *ranges;
+    const double *output_lower, *output_upper, *outcome_places, *left, *rested, *axis, *kind, *ranges;
     const double *bound, *bound_places, *bound_medians, *soil, *soil_place;
 };
 
@@ -176,9 +176,9 @@ static int counts_fit(const bounce_law *law) {
     return law->inputs - law->plain == (law->axes ? of_attitude : 0)
         && all_within(law->indices, law->terms * law->inputs, 0, law->degree + 1)
         && all_within(law->soil_place, law->soil_places, 0, law->conditions)
-        && all_within(law->bound_places, 5, -1, law->conditions) && all_within(law->leaves, 1, 0, law->outcomes)
-        && all_within(law->captured, 1, -1, law->outcomes) && (law->captured[0] < 0 || law->resting) && law->rows
-        && law->soils;
+        && all_within(law->bound_places, 5, -1, law->conditions) && all_within(law->outcome_places, 1, 0, law->outcomes)
+        && all_within(law->outcome_places + 1, 1, -1, law->outcomes)
+        && (law->outcome_places[1] < 0 || law->resting) && law->rows && law->soils;
 }
 
 static int bind(bounce_law *law) {
@@ -207,7 +207,7 @@ static int bind(bounce_law *law) {
     GET(root, "smoothing_root", f * OUTPUTS * OUTPUTS), GET(intercepts, "class_intercepts", f * k);
     GET(slopes, "class_slopes", f * k * t), GET(never, "class_never", f * k);
     GET(output_lower, "output_lower", OUTPUTS), GET(output_upper, "output_upper", OUTPUTS);
-    GET(leaves, "leaves", 1), GET(captured, "captured", 1), GET(left, "leaving_rows", r * 12);
+    GET(outcome_places, "outcome_places", 2), GET(left, "leaving_rows", r * 12);
     GET(rested, "rest_rows", law->resting * 8), GET(axis, "attitude_axes", law->axes * 3);
     GET(kind, "attitude_kind", 2), GET(ranges, "attitude_ranges", (i - law->plain) * 2), GET(bound, "bound", 8);
     GET(bound_places, "bound_places", 5), GET(bound_medians, "bound_medians", 5);
@@ -469,9 +469,10 @@ static int checked(const bounce_law *law, const double *x, const double *attitud
         return BOUNCE_LAW_WRONG;
     }
     for (size_t k = 0; k < law->conditions; k++)
-        if (!(x[k] >= law->lower[k] && x[k] <= law->upper[k])) {
-            snprintf(why, BOUNCE_LAW_WHY, "%s is %g %s, but the law holds from %g to %g", law->condition[k], x[k],
-                     law->unit[k], law->lower[k], law->upper[k]);
+        if (!(x[k] >= law->lower[k] && x[k] <= law->upper[k] && isfinite(x[k]))) {
+            const char *unit = strcmp(law->unit[k], "-") ? law->unit[k] : "";
+            snprintf(why, BOUNCE_LAW_WHY, "%s is %g%s%s, but the law holds from %g to %g", law->condition[k], x[k],
+                     *unit ? " " : "", unit, law->lower[k], law->upper[k]);
             return BOUNCE_LAW_OUTSIDE;
         }
     return BOUNCE_LAW_OK;
@@ -517,7 +518,8 @@ int bounce_law_draw(const bounce_law *law, const double *conditions, const doubl
     outcome = drawn_outcome(law, terms, of, chances, random[OUTCOME]);
     memset(rebound, 0, sizeof *rebound);
     rebound->outcome = (int)outcome, rebound->row = -1;
-    rebound->leaves = (double)outcome == law->leaves[0], rebound->captured = (double)outcome == law->captured[0];
+    rebound->leaves = (double)outcome == law->outcome_places[0];
+    rebound->captured = (double)outcome == law->outcome_places[1];
     if (rebound->captured) {
         fill(rebound, law->rested + 8 * (size_t)(random[REST] * (double)law->resting));
     } else if (rebound->leaves) {

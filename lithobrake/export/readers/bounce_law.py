@@ -113,13 +113,14 @@ class BounceLaw:
         x = self._checked(conditions, fit, spin)
         random = [uniform(seed, draw, place) for place in range(SOIL)]
         terms = self._terms(np.concatenate([x[: self._plain_count], self._attitude_terms(attitude, random[ATTITUDE:])]))
+        leaves, rests = self.numbers["outcome_places"].astype(int).tolist()
         outcome = _place(np.cumsum(self._chances(terms, fit)), random[OUTCOME])
         name = self.outcomes[outcome]
-        if outcome == int(self.numbers["captured"][0]):
+        if outcome == rests:
             rest = self.numbers["rest_rows"]
             row = rest[int(random[REST] * len(rest))]
             return Rebound(name, np.zeros(3), np.zeros(3), row[4:], float(row[0]), row[1:4], -1)
-        if outcome != int(self.numbers["leaves"][0]):
+        if outcome != leaves:
             unknown = np.full(3, math.nan)
             return Rebound(name, unknown, unknown, np.full(4, math.nan), math.nan, unknown, -1)
         number = self._row(terms, fit, random[ROW])
@@ -141,10 +142,10 @@ class BounceLaw:
         if spin is not None and not (len(spin) == 3 and all(map(math.isfinite, spin))):
             raise ValueError(f"spin is {list(spin)}; allowed: three finite numbers")
         for name, (lower, upper) in self.ranges.items():
-            if not lower <= conditions[name] <= upper:
-                raise OutsideRangeError(
-                    f"{name} is {conditions[name]:g} {self.units[name]}, but the law holds from {lower:g} to {upper:g}"
-                )
+            value, unit = float(conditions[name]), self.units[name]
+            if not (lower <= value <= upper and math.isfinite(value)):
+                told = f"{value:g}" if unit == "-" else f"{value:g} {unit}"
+                raise OutsideRangeError(f"{name} is {told}, but the law holds from {lower:g} to {upper:g}")
         return np.array([float(conditions[name]) for name in self.conditions])
 
     def _attitude_terms(self, attitude: Sequence[float] | None, random: Sequence[float]) -> np.ndarray:
