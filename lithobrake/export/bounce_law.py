@@ -78,7 +78,7 @@ def write_bounce_law(results: StudyResults, paths: Sequence[Path], chosen: Expor
     if explorer is None:
         raise ValueError(
             f"{results.folder} has no emulator of touchdowns, of which a bounce law is made; "
-            "run a study whose landers are followed by landings ([journey]), more of them if these were too few"
+            "run a study that follows landers over their touchdowns ([journey]), more of them if these were too few"
         )
     body = "\n".join([TITLE, *_head(results), *_blocks(results, explorer)]) + "\n"
     law, *readers = paths
