@@ -12,7 +12,7 @@ Kinds = Annotated[
     typer.Option(
         "--to",
         metavar="KIND",
-        help="oem, aem, spk, czml, plates, facets, geotiff, geojson, vtkhdf or sheet; may be repeated.",
+        help="oem, aem, spk, czml, plates, facets, geotiff, geojson, bounce-law, vtkhdf or sheet; may be repeated.",
     ),
 ]
 Samples = Annotated[

@@ -6,6 +6,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from lithobrake.export.attitudes import attitude_names, write_attitudes
+from lithobrake.export.bounce_law import LAW, READERS, write_bounce_law
 from lithobrake.export.czml import write_czml
 from lithobrake.export.ephemerides import ephemeris_names, write_ephemerides, write_spk
 from lithobrake.export.flown import ExportOptions
@@ -61,6 +62,7 @@ KINDS = {
     "facets": Kind(_always("facets.csv", "facets.fits"), write_facets),
     "geotiff": Kind(map_names, write_geotiff),
     "geojson": Kind(point_names, write_geojson),
+    "bounce-law": Kind(_always(LAW, *READERS), write_bounce_law),
     "vtkhdf": Kind(lambda results, chosen: [f"{_landing_name(chosen)}.vtkhdf", "bed_0.vtkhdf"], _write_motions),
     "sheet": Kind(lambda results, chosen: [f"{_landing_name(chosen)}.png"], _write_sheet),
 }

@@ -12,7 +12,17 @@ from lithobrake.results.table import Table
 from lithobrake.vocabulary.given_numbers import numbers, whole_number
 from lithobrake.vocabulary.number_words import QUANTILES
 from lithobrake.vocabulary.plain_text import html_table, in_lines
-from lithobrake.vocabulary.quantities import IMPACT_SPEED, OUTPUTS, RUN, SPIN_OUT, TOUCHDOWN, Quantity, quantity
+from lithobrake.vocabulary.quantities import (
+    GROUND,
+    IMPACT_INCIDENCE,
+    IMPACT_SPEED,
+    OUTPUTS,
+    RUN,
+    SPIN_OUT,
+    TOUCHDOWN,
+    Quantity,
+    quantity,
+)
 
 if TYPE_CHECKING:
     from lithobrake.emulator import Emulator
@@ -23,6 +33,18 @@ if TYPE_CHECKING:
 
 SPEED, ELEVATION, AZIMUTH, SPIN = "speed_out", "elevation_out", "azimuth_out", "spin_out"
 VELOCITY = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
+# How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
+FACTOR, DEGREES = 1.1, 5.0
+LARGEST = {IMPACT_INCIDENCE: 90.0, GROUND[1]: 90.0}
+
+
+def trained_range(name: str, lower: float, upper: float) -> tuple[float, float]:
+    """The range in which an emulator has an answer, of an input of OF_TOUCHDOWN that its runs had between two ends."""
+    if name in LARGEST:
+        return max(lower - DEGREES, 0.0), min(upper + DEGREES, LARGEST[name])
+    # Gravity below 0 points outward.
+    margin = (FACTOR - 1.0) * max(abs(lower), abs(upper))
+    return (lower if name == IMPACT_SPEED else lower - margin), upper + margin
 
 
 class NamedEmulator:
@@ -83,6 +105,13 @@ class NamedEmulator:
         ]
         heads = ("input", "unit", "5 % quantile", "median", "95 % quantile")
         return html_table("Inputs of the emulator", heads, rows) + self.model._repr_html_()
+
+    @property
+    def tables(self) -> dict[str, np.ndarray]:
+        """The emulator as plain tables, for programs in other languages (`lithobrake.emulator.law_tables`)."""
+        from lithobrake.emulator import law_tables
+
+        return law_tables([self.model])
 
     @property
     def _modelled(self) -> list[str]:

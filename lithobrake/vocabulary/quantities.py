@@ -65,6 +65,8 @@ TIME_LEFT = "journey.time_left"
 GROUND_KIND, GROUND_SIZE = "ground.kind", "ground.grain_size"
 # The acceleration of a touchdown, by the keys of the study file.
 GROUND = ("surface.gravity", "surface.slope_deg", "surface.slope_azimuth_deg")
+# What differs from touchdown to touchdown of a journey, beside the attitude.
+OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, *GROUND[:2])
 # How the ground turns, by the keys of the study file.
 ROTATION = ("surface.rotation_x", "surface.rotation_y", "surface.rotation_z")
 # Of touchdowns that are followed to rest: see Landing.hop_height.

@@ -15,6 +15,8 @@ from lithobrake.results import StudyResults
 
 from ..pipeline.journeys.bouncing_lander import run_without_emulator
 from ..quick_studies import quick_studies
+from ..report.conftest import finished as finished_folder
+from ..report.finished_studies import asked_study
 from .delivered import delivered_tables
 
 
@@ -37,3 +39,9 @@ def delivered(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     # Nothing that is passed on needs the file of the states.
     (home / "states.csv").unlink()
     return lithobrake.open_study(home / "out")
+
+
+@pytest.fixture(scope="session")
+def asked_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Of 48 landers that are followed to rest, which the tests of the page read, too."""
+    return finished_folder(tmp_path_factory, asked_study)

@@ -15,6 +15,7 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.results.named_emulator import trained_range
 from lithobrake.smallbody.touchdown import Answers
 from lithobrake.study import Study
 from lithobrake.vocabulary.constants import REFIT_COUNT
@@ -22,9 +23,9 @@ from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
     GROUND,
-    IMPACT_INCIDENCE,
     IMPACT_SPEED,
     JOURNEY_DESIGN,
+    OF_TOUCHDOWN,
     SPIN,
     TO_REST,
 )
@@ -38,13 +39,8 @@ if TYPE_CHECKING:
 # Another file than that of single landings, whose inputs are those of the study alone.
 GRAVITY, SLOPE, _ = GROUND
 ALONG, ASIDE, DURATION, _, RISE = TO_REST
-# What differs from touchdown to touchdown of a journey, beside the attitude; the spin of the arrival is in the scatter.
-OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, GRAVITY, SLOPE)
 # Tables of which the emulator has these keys alone: what else they hold is drawn at every touchdown.
 ARRIVAL_TABLES = ("impact.", "surface.")
-# How far beyond the trained range an impact may lie: by a factor of speed and gravity, by degrees of its angles.
-FACTOR, DEGREES = 1.1, 5.0
-LARGEST = {IMPACT_INCIDENCE: 90.0, SLOPE: 90.0}
 
 
 @dataclass(frozen=True)
@@ -175,16 +171,11 @@ def trained_ranges(study: Study, runs: DesignRuns) -> dict[str, tuple[float, flo
     """The ranges of OF_TOUCHDOWN, in the file's units, in which the emulator of touchdowns has an answer."""
     found = {}
     for name, (lower, upper) in runs.ranges(OF_TOUCHDOWN).items():
-        reach = DEGREES if name in LARGEST else (FACTOR - 1.0) * max(abs(lower), abs(upper))
+        ends = trained_range(name, lower, upper)
         # First touchdowns at one place have one ground: nothing is known of others, where landers are followed anyway.
-        if study.journey.touchdowns is not None and name in GROUND and upper - lower < reach:
+        if study.journey.touchdowns is not None and name in GROUND and upper - lower < ends[1] - upper:
             continue
-        if name in LARGEST:
-            found[name] = max(lower - DEGREES, 0.0), min(upper + DEGREES, LARGEST[name])
-        else:
-            # Gravity below 0 points outward.
-            margin = (FACTOR - 1.0) * max(abs(lower), abs(upper))
-            found[name] = (lower if name == IMPACT_SPEED else lower - margin), upper + margin
+        found[name] = ends
     return found
 
 

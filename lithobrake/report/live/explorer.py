@@ -17,7 +17,7 @@ from lithobrake.statements.expansion import MODEL
 from lithobrake.statements.labels import input_words, output
 from lithobrake.vocabulary.number_words import listing, number, percent, thousands
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
-from lithobrake.vocabulary.quantities import GROUND, IMPACT_INCIDENCE, IMPACT_SPEED
+from lithobrake.vocabulary.quantities import IMPACT_SPEED, OF_TOUCHDOWN
 
 TYPES = ("float64", "float32", "int32", "int16", "uint8")
 # More flown starts would make the page heavier, and no cell of them noticeably smaller.
@@ -30,8 +30,6 @@ SCRIPTS = (
 SHOWN = ("speed_out", "elevation_out", "spin_out")
 LEVEL = ("velocity_out_x", "velocity_out_y")
 START = ("start_speed", "start_elevation_deg", "velocity_x", "velocity_y")
-# What differs from touchdown to touchdown, in the order in which the page says it; the first one by its logarithm.
-OF_TOUCHDOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, *GROUND[:2])
 
 
 def packed(arrays: Mapping[str, np.ndarray]) -> dict[str, dict[str, Any]]:
