@@ -1,0 +1,1 @@
+"""Scores of predicted landings against what was observed."""
