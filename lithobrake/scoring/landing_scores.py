@@ -86,7 +86,7 @@ def _known(same: PredictedLandings, observed: ObservedLanding) -> Iterator[tuple
     if observed.place is not None:
         yield "place", np.isfinite(same.direction).all(axis=1)
     if observed.face is not None:
-        yield "face", same.face != ""
+        yield "face", np.array([face != "" for face in same.face], dtype=np.bool_)
 
 
 def _quantity_score(quantity: str, sample: PredictedLandings, observed: ObservedLanding) -> LandingScore:
