@@ -2,9 +2,9 @@
 
     python validation/past_landings.py [--out FOLDER]
 
-Takes MASCOT's simulated landers from validation/mascot/mascot.csv, one prediction a setting, writes each as a table that
-`lithobrake score` reads, scores it, and keeps the scores in past_landings.json and their table in docs/scoring.md. The
-other landings of the archive have no simulated landers here.
+Takes MASCOT's simulated landers from validation/mascot/mascot.csv, one prediction a setting, writes each as a table
+that `lithobrake score` reads, scores it, and keeps the scores in past_landings.json and their table in docs/scoring.md.
+The other landings of the archive have no simulated landers here.
 """
 
 import csv
@@ -17,9 +17,10 @@ from lithobrake.scoring.landing_scores import LandingScore, scores
 from lithobrake.scoring.observed_landing import past_landing
 from lithobrake.scoring.predicted_landings import read_prediction
 
-HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parents[0] / "benchmarks"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import command_line, origin, write_document
+
+HERE = Path(__file__).parent
 
 ENDS = {"at rest": "at_rest", "escaped": "escaped", "time limit": "under_way"}
 # As the settings are named on the page of MASCOT.

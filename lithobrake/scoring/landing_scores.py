@@ -84,7 +84,7 @@ def _known(same: PredictedLandings, observed: ObservedLanding) -> Iterator[tuple
     for name in observed.numbers:
         yield name, np.isfinite(same.numbers[name])
     if observed.place is not None:
-        yield "place", np.isfinite(same.direction).all(axis=1)
+        yield "place", np.isfinite(same.direction.sum(axis=1))
     if observed.face is not None:
         yield "face", np.array([face != "" for face in same.face], dtype=np.bool_)
 
