@@ -194,6 +194,41 @@ def compare(
     arguments.tell_result(json, json_values(comparison), lines)
 
 
+@arguments.command(arguments.LOOK, "score runs/mascot hard_ground.csv --landing mascot")
+def score(
+    predictions: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="PREDICTION...",
+            help="Study folders, or tables (CSV) with a row for each predicted landing.",
+            show_default=False,
+        ),
+    ],
+    landing: Annotated[
+        str | None, typer.Option("--landing", metavar="NAME", help="A landing of the archive (docs/scoring.md).")
+    ] = None,
+    observation: Annotated[
+        Path | None, typer.Option("--observation", metavar="FILE.toml", help="What was observed of another landing.")
+    ] = None,
+    json: arguments.Json = False,
+) -> None:
+    """Score predictions of a landing against what was observed: ends, times, contacts, place, side."""
+    from lithobrake.results.study_files import json_values
+    from lithobrake.scoring.landing_scores import score_lines, scores
+    from lithobrake.scoring.observed_landing import archive, past_landing, read_observation
+    from lithobrake.scoring.predicted_landings import read_prediction
+
+    if (landing is None) == (observation is None):
+        given = "neither --landing nor --observation is" if landing is None else "--landing and --observation are both"
+        raise ValueError(
+            f"{given} given; allowed: one of --observation FILE.toml and --landing {' | '.join(archive())}; give one"
+        )
+    observed = past_landing(landing) if landing is not None else read_observation(observation or Path())
+    found = [one for path in predictions for one in scores(read_prediction(path), observed)]
+    lines = [f"{observed.title} ({observed.source})", *score_lines(found)]
+    arguments.tell_result(json, json_values([asdict(one) for one in found]), lines)
+
+
 def _view_journey(folder: Path, number: int, run: str | None, solid: bool) -> None:
     page = folder / "report" / f"journey_{number}.html"
     _refuse_both(number, run)

@@ -1,0 +1,88 @@
+"""Scores against closed forms and against another library."""
+
+import math
+
+import numpy as np
+import pytest
+import scoringrules
+
+from lithobrake.scoring.proper_scores import crps, energy_score, log_score, probability_below
+
+
+def test_one_value_is_scored_by_its_distance() -> None:
+    assert crps([3.0], 5.0).of() == 2.0
+    assert energy_score([[1.0, 2.0, 2.0]], [0.0, 0.0, 0.0]).of() == 3.0
+
+
+def test_an_error_makes_a_normal_law_of_one_value() -> None:
+    """The CRPS of a normal law at its mean is (sqrt 2 - 1) / sqrt pi of its standard deviation [Gneiting-2007]."""
+    assert crps([2.0], 2.0, 0.5).of() == pytest.approx(0.5 * (math.sqrt(2.0) - 1.0) / math.sqrt(math.pi), rel=1e-12)
+    assert crps([1.0], 2.5, 0.5).of() == pytest.approx(float(scoringrules.crps_normal(2.5, 1.0, 0.5)), rel=1e-9)
+
+
+def test_samples_have_the_score_of_another_library() -> None:
+    values = np.random.default_rng(1).gamma(2.0, 3.0, 200)
+    for observed in (0.5, 6.0, 30.0):
+        found = float(scoringrules.crps_ensemble(observed, values, estimator="nrg"))
+        assert crps(values, observed).of() == pytest.approx(found, rel=1e-9)
+    places = np.random.default_rng(2).normal(0.0, [1.0, 2.0, 3.0], (150, 3))
+    found = float(scoringrules.es_ensemble(np.array([1.0, 1.0, -4.0]), places))
+    assert energy_score(places, [1.0, 1.0, -4.0]).of() == pytest.approx(found, rel=1e-9)
+
+
+def test_weights_count_as_repetitions() -> None:
+    values, repeated = np.array([1.0, 4.0, 9.0]), np.array([1.0, 4.0, 4.0, 9.0, 9.0, 9.0])
+    assert crps(values, 5.0, 0.3).of([1.0, 2.0, 3.0]) == pytest.approx(crps(repeated, 5.0, 0.3).of(), rel=1e-12)
+    places = np.outer(values, [1.0, -1.0, 2.0])
+    other = energy_score(np.outer(repeated, [1.0, -1.0, 2.0]), [1.0, 1.0, 1.0])
+    assert energy_score(places, [1.0, 1.0, 1.0]).of([1.0, 2.0, 3.0]) == pytest.approx(other.of(), rel=1e-12)
+
+
+def test_an_error_of_a_place_scores_as_a_cloud_of_it() -> None:
+    """One place with its error, at that place: the energy score of a normal law in three dimensions at its mean.
+
+    Mean length of a normal vector: 2 sqrt(2 / pi) of its deviation; between two of them sqrt 2 times as much.
+    """
+    mean = 2.0 * math.sqrt(2.0 / math.pi) * 0.7
+    assert energy_score([[5.0, 5.0, 5.0]], [5.0, 5.0, 5.0], 0.7).of() == pytest.approx(
+        mean * (1.0 - math.sqrt(0.5)), rel=0.1
+    )
+
+
+@pytest.mark.parametrize("score", ["crps", "energy", "logarithmic"])
+def test_the_truth_has_the_best_mean_score(score: str) -> None:
+    """Against predictions that are shifted, too narrow and too wide; the observation has an error."""
+    generator = np.random.default_rng(3)
+    truth, error = generator.normal(0.0, 1.0, (300, 3)), 0.5
+    observed = truth[:, :1] + generator.normal(0.0, error, (300, 1))
+    sample = generator.normal(0.0, 1.0, (300, 3))
+
+    def mean(shift: float, scale: float) -> float:
+        values = shift + scale * sample
+        if score == "logarithmic":
+            share = (values[:, 0] > 0.5).mean()
+            hits = np.arange(1000) < 1000 * share
+            return float(np.mean([log_score(hits if one > 0.5 else ~hits, 2) for one in truth[:, 0]]))
+        if score == "crps":
+            return float(np.mean([crps(values[:, 0], one, error).of() for one in observed[:, 0]]))
+        return float(np.mean([energy_score(values, one).of() for one in truth[:100]]))
+
+    best = mean(0.0, 1.0)
+    for shift, scale in ((1.0, 1.0), (0.0, 0.3), (0.0, 3.0)):
+        if score == "logarithmic" and shift == 0.0 and scale == 3.0:
+            continue
+        assert mean(shift, scale) > best
+
+
+def test_what_no_sample_shows_is_not_impossible() -> None:
+    assert log_score(np.zeros(9), 2) == pytest.approx(-math.log2(0.5 / 10.0))
+    # Half of the weight lies on one landing, so 10 landings count as the effective number of them.
+    weights = np.array([9.0, *np.ones(9)])
+    effective = 18.0**2 / (81.0 + 9.0)
+    expected = -math.log2((effective * 0.5 + 0.5) / (effective + 2.0))
+    assert log_score(np.arange(10) == 0, 4, weights) == pytest.approx(expected)
+
+
+def test_the_place_of_an_observation_counts_ties_half() -> None:
+    assert probability_below([1.0, 2.0, 3.0, 4.0], 2.0, 0.0, np.ones(4)) == 0.375
+    assert probability_below([1.0, 3.0], 2.0, 1.0, np.ones(2)) == pytest.approx(0.5)
