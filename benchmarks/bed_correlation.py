@@ -89,9 +89,7 @@ def main() -> None:
         rows.append(row | {f"likelihood_{one:g}": float(np.interp(one, CORRELATIONS, each[name])) for one in SHOWN})
     write_rows(TABLE, rows[0], map(rounded, rows))
     differ = [each[row["study"]] for row in rows if row["not_at_rest"]]
-    boldest = max(
-        each, key=lambda name: np.interp(0.5, CORRELATIONS, each[name]) - np.interp(0.0, CORRELATIONS, each[name])
-    )
+    boldest = max(rows, key=lambda row: float(row["likelihood_0.5"] - row["likelihood_0"]))["study"]
     found = {
         "all": of_one_more([*each.values()]), "some_rest_and_some_do_not": of_one_more(differ),
         "without_the_study_of_the_largest": of_one_more([one for name, one in each.items() if name != boldest]),

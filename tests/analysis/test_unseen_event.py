@@ -64,10 +64,11 @@ def test_runs_of_unequal_weight_count_as_fewer() -> None:
     assert share_estimate(np.zeros(48), bed, weights=weights).share.upper == unseen_limit(bed, weights=weights)
 
 
-@pytest.mark.parametrize(("beds", "runs"), [(8, 2), (8, 4), (12, 4), (24, 4), (30, 3)])
+@pytest.mark.parametrize(("beds", "runs"), [(8, 4), (12, 4), (24, 4), (30, 3), (24, 10), (12, 20)])
 def test_more_landings_at_rest_never_make_the_lower_end_lower(beds: int, runs: int) -> None:
     bed = np.arange(beds * runs) % beds
     found = [share_estimate((np.arange(len(bed)) >= failed).astype(float), bed).share for failed in range(4)]
+    assert found[0].lower == 1.0 - unseen_limit(bed)
     ends = [one.lower for one in found]
     assert ends == sorted(ends, reverse=True)
     assert [one.upper for one in found] == sorted((one.upper for one in found), reverse=True)
