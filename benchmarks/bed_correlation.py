@@ -26,7 +26,7 @@ from harness import (
 )
 from scipy import special, stats
 
-from lithobrake.analysis.unseen_event import LARGEST_CORRELATION
+from lithobrake.vocabulary.constants import LARGEST_CORRELATION
 
 TABLE = RESULTS / "bed_correlation.csv"
 CORRELATIONS = np.concatenate([[1e-6], np.linspace(0.005, 0.995, 199)])

@@ -18,7 +18,8 @@ from harness import RESULTS, Row, command_line, rounded, timed, write_made, writ
 from lithobrake.analysis.confidence import LEVEL, Bounds
 from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.share_estimate import share_estimate
-from lithobrake.analysis.unseen_event import LARGEST_CORRELATION, unseen_limit
+from lithobrake.analysis.unseen_event import unseen_limit
+from lithobrake.vocabulary.constants import LARGEST_CORRELATION
 
 TABLE = RESULTS / "rest_coverage.csv"
 FRACTIONS = (0.9, 0.95, 0.98, 0.99, 0.998, 0.999)

@@ -8,6 +8,7 @@ from scipy import optimize, special
 
 from lithobrake.analysis.confidence import LEVEL
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.constants import LARGEST_CORRELATION
 from lithobrake.vocabulary.given_numbers import finite_number, labels, numbers, whole_number
 from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 
@@ -15,9 +16,6 @@ from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 MOST_UNITS = 2**53
 # An event that fewer runs are expected to have met is as one that none has met.
 HALF_RUN = 0.5
-# Runs that all end alike do not show how alike runs on one bed are. Of 100 studies one exceeds this correlation, by
-# what earlier ones have shown (benchmarks/bed_correlation.py); limits hold up to it.
-LARGEST_CORRELATION = 0.5
 
 
 def upper_limit(unit_count: int, level: float = EXPANSION_LEVEL) -> float:

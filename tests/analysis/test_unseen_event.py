@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from lithobrake.analysis import LEVEL, share_estimate, unseen_limit, upper_limit
-from lithobrake.analysis.unseen_event import LARGEST_CORRELATION, even_limit
+from lithobrake.analysis.unseen_event import even_limit
+from lithobrake.vocabulary.constants import LARGEST_CORRELATION
 
 ROOT = Path(__file__).parents[2]
 
