@@ -116,7 +116,7 @@ def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:
 
 
 def answers(name: str, values: ArrayLike) -> Array:
-    """Values of runs [run_count], NaN where a run has none or it is masked, constant where they differ by rounding alone.
+    """Values of runs [run_count], NaN where a run has none or it is masked, constant where they differ by rounding.
 
     Raises ValueError for infinite ones.
     """

@@ -32,7 +32,8 @@ def score_of(predicted: Array, y: Array) -> Score:
     """Scores of one output from predicted and true values [count].
 
     ape [%] list; mape [%]; rmse [unit of the output]; std, that of y (population); rrmse = rmse / std;
-    q2 = 1 - rrmse**2, the explained share of the variance. For constant y: rrmse 0 if exact but for rounding, else infinite.
+    q2 = 1 - rrmse**2, the explained share of the variance. For constant y: rrmse 0 if exact to
+    rounding, else infinite.
     """
     error = predicted - y
     ape = absolute_percentage_error(predicted, y)

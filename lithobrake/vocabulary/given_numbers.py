@@ -87,7 +87,7 @@ def numbers_or_nan(name: str, values: "ArrayLike") -> "NDArray[np.float64]":
 
 
 def without_rounding(values: "NDArray[np.float64]") -> "NDArray[np.float64]":
-    """Outputs [run_count] or [run_count, output_count], NaN where there is none; one that varies by rounding is constant.
+    """Outputs [run_count] or [run_count, output_count], NaN where a run has none; one that varies by rounding is one.
 
     The rule knows no unit: an output varies if its values differ by more than `ROUNDING` times the largest of them.
     """
