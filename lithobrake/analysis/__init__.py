@@ -32,7 +32,7 @@ from lithobrake.analysis.half_width import (
     scatter_of,
 )
 from lithobrake.analysis.identifiability import Identifiability, identifiability, predictive_p_value
-from lithobrake.analysis.outcome_model import OutcomeModel, refit_interval, unseen_limit, upper_limit
+from lithobrake.analysis.outcome_model import OutcomeModel, refit_interval
 from lithobrake.analysis.output_estimates import (
     DirectionEstimate,
     direction_estimate,
@@ -44,6 +44,7 @@ from lithobrake.analysis.posterior import Observation, bed_shares, beds_statemen
 from lithobrake.analysis.regions import DensityRegion, Ellipses, HighestDensity, dispersion_ellipses, highest_density
 from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.analysis.subset_simulation import SubsetResult, subset_simulation
+from lithobrake.analysis.unseen_event import unseen_limit, upper_limit
 from lithobrake.analysis.variance_shares import VarianceShares, variance_shares
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.vocabulary.estimate import Estimate

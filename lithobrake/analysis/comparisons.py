@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import special
 
 from lithobrake.analysis.confidence import LEVEL, Bounds, answers, numbered_beds, share_interval, t_quantile
-from lithobrake.analysis.outcome_model import upper_limit
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
+from lithobrake.analysis.unseen_event import even_limit
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_CORRELATION
 from lithobrake.vocabulary.estimate import Estimate
@@ -42,12 +42,15 @@ class BestChoice:
     not_worse: tuple[int, ...]
 
 
-def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoice:
+def best_choice(
+    met: ArrayLike, bed_count: int, allowed: ArrayLike, *, run_count: int | None = None
+) -> BestChoice:  # fmt: skip
     """Find the choice that meets an event most often, met [choice_count, refit_count, draw_count], of those allowed.
 
-    bed_count: beds that the emulator was fitted to. The same place in two choices is the same draw of all but the
-    choice, so differences are taken draw by draw. Refits scatter by what beds do and by what so few draws add; their
-    distances from the mean are scaled to the first, and to what all draws together leave of the second.
+    bed_count, run_count: beds and runs that the emulator was fitted to; None: each bed counts as one run. The same
+    place in two choices is the same draw of all but the choice, so differences are taken draw by draw. Refits scatter
+    by what beds do and by what so few draws add; their distances from the mean are scaled to the first, and to what all
+    draws together leave of the second.
     Raises ValueError for fewer than two refits, draws or beds, and where nothing is allowed.
     Source: [Sun-2011] (variance between, freed of that within); [Efron-1983] (what selection adds); [Hsu-1981] (all
     that cannot be told from the best).
@@ -72,7 +75,8 @@ def best_choice(met: ArrayLike, bed_count: int, allowed: ArrayLike) -> BestChoic
     shares = np.zeros(len(values))
     shares[open_to] = (wins / wins.sum(axis=0)).mean(axis=1)
     not_worse = _not_worse(values, best, open_to, bed_count)
-    own = _own(values, best, open_to, not_worse, bed_count)
+    limit = even_limit(bed_count if run_count is None else run_count, bed_count)
+    own = _own(values, best, open_to, not_worse, bed_count, limit)
     if runner_up is None:
         return BestChoice(best, None, shares, None, own, not_worse)
     between = values[best] - values[runner_up]
@@ -101,17 +105,18 @@ def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, 
     return middle, lower if first >= places[0] else -math.inf, upper if second <= places[-1] else math.inf
 
 
-def _own(values: Array, best: int, allowed: NDArray[np.intp], near: tuple[int, ...], bed_count: int) -> Estimate:
+def _own(
+    values: Array, best: int, allowed: NDArray[np.intp], near: tuple[int, ...], bed_count: int, limit: float
+) -> Estimate:  # fmt: skip
     """The mean of the best less its optimism, with the error that those which cannot be distinguished from it have.
 
     That the best is chosen among them chooses a small error of its own, too. So the variance is theirs together, as a
-    part of p (1 - p), on the logit scale near 0 and 1.
+    part of p (1 - p), on the logit scale near 0 and 1. limit: of what the runs have not shown.
     """
     value = min(max(float(values[best].mean()) - _optimism(values[allowed], bed_count), 0.0), 1.0)
-    limit = upper_limit(bed_count, LEVEL)
     means = values[list(near)].mean(axis=(1, 2))
     spread = float((means * (1.0 - means)).sum())
-    # Where no draw scatters so many beds bound what was never seen.
+    # Where no draw scatters so many runs bound what was never seen.
     if value in (0.0, 1.0) or spread <= 0.0:
         return Estimate(value, value * (1.0 - limit), value + (1.0 - value) * limit)
     part = sum(_error_variance(values[one], bed_count) for one in near) / spread

@@ -10,7 +10,14 @@ from scipy import optimize, special
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import LEVEL as LEVEL
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.given_numbers import LARGEST, finite_number, labels, numbers_or_nan, whole_number
+from lithobrake.vocabulary.given_numbers import (
+    LARGEST,
+    finite_number,
+    labels,
+    numbers_or_nan,
+    whole_number,
+    without_rounding,
+)
 
 Bounds = tuple[float, float]
 
@@ -109,7 +116,10 @@ def numbered_beds(bed: ArrayLike, run_count: int) -> Labels:
 
 
 def answers(name: str, values: ArrayLike) -> Array:
-    """Values of runs [run_count], NaN where a run has none or it is masked; raises ValueError for infinite ones."""
+    """Values of runs [run_count], NaN where a run has none or it is masked, constant where they differ by rounding.
+
+    Raises ValueError for infinite ones.
+    """
     known = numbers_or_nan(name, values)
     beyond = int((np.abs(known) > LARGEST).sum())
     if known.ndim != 1 or beyond:
@@ -117,7 +127,7 @@ def answers(name: str, values: ArrayLike) -> Array:
             f"{name} has shape {known.shape} and {beyond} infinite values or beyond {LARGEST:g}, but must be a number "
             "for each run: NaN where a run has none"
         )
-    return known
+    return without_rounding(known)
 
 
 def answered_runs(values: ArrayLike, bed: ArrayLike) -> tuple[Array, Labels]:

@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL, answered_runs, answers
-from lithobrake.analysis.outcome_model import refit_interval, unseen_limit
+from lithobrake.analysis.outcome_model import refit_interval
 from lithobrake.analysis.share_estimate import share_estimate
+from lithobrake.analysis.unseen_event import unseen_limit
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.chaos.distributions import Distribution
@@ -126,7 +127,7 @@ class FailureProbability:
     source                      "runs" or "emulator"
     by_runs                     what the runs say, whichever answers, with bounds for those without an outcome
     by_emulator                 what the emulator says; None where it was not asked, or cannot tell
-    tail_limit                  the largest probability that an event may have which no run on so many beds has met;
+    tail_limit                  the largest probability that an event may have which none of so many runs has met;
                                 what an emulator has of rarer ones rests on the form of its scatter, so its interval
                                 then reaches at least as far as that of the runs
     """
@@ -164,14 +165,14 @@ def failure_probability(
     by_runs = FailureProbability(runs.share, RUNS, runs, None, limit)
     if drawn is None or runs.share.bounds is None:
         return by_runs
-    emulator = refit_interval(*drawn, len(np.unique(beds)))
+    emulator = refit_interval(*drawn, len(np.unique(beds)), len(beds))
     if RARE <= runs.share.value <= 1.0 - RARE:
         return replace(by_runs, by_emulator=emulator)
     # The emulator learnt nothing from the runs without an outcome: none of them may meet the limit state, or all.
     assert emulator.bounds is not None
     lower, upper = ((1.0 - runs.missing) * end for end in emulator.bounds)
     upper += runs.missing
-    # A tail that is rarer than so many beds can show rests on the form of its scatter: it rules out no more than they.
+    # A tail that is rarer than so many runs can show rests on the form of its scatter: it rules out no more than they.
     if emulator.value < limit:
         upper = max(upper, runs.share.bounds[1])
     if emulator.value > 1.0 - limit:

@@ -6,19 +6,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import LEVEL, share_interval, t_quantile
+from lithobrake.analysis.confidence import share_interval, t_quantile
+from lithobrake.analysis.unseen_event import HALF_RUN, even_limit
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.given_numbers import finite_number, labels, numbers, whole_number
-from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
+from lithobrake.vocabulary.given_numbers import numbers, whole_number
 
 # Points whose probabilities are worked out at once: bounds the memory of the polynomial features.
 _BLOCK = 65_536
-# More units than any study has; a float holds their number.
-MOST_UNITS = 2**53
-# An event that fewer runs are expected to have met is as one that none has met.
-HALF_RUN = 0.5
 
 
 class OutcomeModel:
@@ -95,40 +91,16 @@ class OutcomeModel:
         return np.column_stack(columns)
 
 
-def upper_limit(unit_count: int, level: float = EXPANSION_LEVEL) -> float:
-    """Largest probability that an event may have, at a level of confidence, which none of so many units has met.
-
-    Units are independent: beds, not the runs on them (`unseen_limit`).
-    Raises ValueError for a count below 0, and for a level outside 0 to 1.
-    Source: [Clopper-1934], at a count of 0; about 3 / unit_count for 0.95.
-    """
-    finite_number("level", level, above=0.0, below=1.0)
-    # Without any unit the event may have every probability.
-    if whole_number("unit_count", unit_count, 0, MOST_UNITS) == 0:
-        return 1.0
-    return float(1.0 - (1.0 - level) ** (1.0 / unit_count))
-
-
-def unseen_limit(bed: ArrayLike) -> float:
-    """Largest probability, at `LEVEL`, of an event that none of the runs on these beds [run_count] has met.
-
-    bed: labels of the beds of the runs of which it is known that they have not met it. The unit is the bed, as in every
-    interval of the estimates: runs on one bed may all miss what the runs on another meet. Raises ValueError for what is
-    no label for each run. Source: [Clopper-1934].
-    """
-    beds = labels("bed", bed, np.size(np.asanyarray(bed)), "each run")
-    return upper_limit(len(np.unique(beds)), LEVEL)
-
-
 def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_count: int | None = None) -> Estimate:
     """Share of draws that have met an event, with its interval over beds that were not in the study.
 
     counts, totals [refit_count]: draws of each refit that have met it, and all of its draws, at least two. bed_count:
     beds that the emulator was fitted to. The scatter of the refits' shares, less what finite draws add, is the error of
-    the fit. An event that no draw or every draw has met is bounded by what so many beds can say (`unseen_limit`), and
+    the fit. An event that no draw or every draw has met is bounded by what so many runs can say (`unseen_limit`), and
     one that few have met has no wider bounds than that, or than its error on the plain scale. run_count: runs that the
     emulator was fitted to. An event that less than half of a run is expected to have met has the bounds of one that
-    none has met at least: refits of so few runs do not scatter by what these have not shown. None: it is not known.
+    none has met at least: refits of so few runs do not scatter by what these have not shown. None: it is not known, and
+    each bed counts as one run.
     Raises ValueError for fewer than two refits or beds, for a refit with fewer than two draws, and for counts that are
     no part of their totals.
     Source: [Sun-2011] (variance between, freed of that within); [Field-2007] (groups drawn whole).
@@ -142,7 +114,7 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_cou
     if not ((met >= 0.0) & (met <= drawn)).all():
         raise ValueError("counts must lie between 0 and totals in every refit: draws that have met the event, of all")
     share, total = float(met.sum() / drawn.sum()), float(drawn.sum())
-    limit = upper_limit(bed_count, LEVEL)
+    limit = even_limit(bed_count if run_count is None else run_count, bed_count)
     if share in (0.0, 1.0):
         return Estimate(share, share * (1.0 - limit), share + (1.0 - share) * limit)
     shares = met / drawn

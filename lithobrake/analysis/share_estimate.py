@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis import confidence
 from lithobrake.analysis.control_variate import control_variate
-from lithobrake.analysis.outcome_model import upper_limit
+from lithobrake.analysis.unseen_event import HALF_RUN, limit_of_counts, part_that_counts
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
@@ -27,11 +27,17 @@ BED_VARIANCE_CONFIDENCE = 0.7
 
 
 class _Mean(NamedTuple):
-    """A mean over landings: values less what the inputs explain, of which it is the plain mean, and beds from 0."""
+    """A mean over landings: values less what the inputs explain, of which it is the plain mean, and beds from 0.
+
+    part: of the landings that counts, as `part_that_counts` gives it; is_event: whether each meets an event or not, and
+    has no share of its flights.
+    """
 
     value: float
     values: Array
     beds: Labels
+    part: float
+    is_event: bool
 
     @property
     def bed_count(self) -> int:
@@ -81,11 +87,12 @@ def share_estimate(
         raise ValueError(f"terms are of {len(terms[0])} runs and shares of {len(h)}; give those of the same runs")
     beds, answered = confidence.numbered_beds(bed, len(h)), np.isfinite(h)
     left = _less_inputs(h, terms, w, beds) if explained is None else h - numbers("explained", explained)
-    known = _mean_of(left[answered], w[answered], beds[answered])
+    is_event = bool(np.isin(h[answered], (0.0, 1.0)).all())
+    known = _mean_of(left[answered], w[answered], beds[answered], is_event)
     ends = known, known
     if not answered.all():
         filled = (np.where(answered, h, end) for end in (0.0, 1.0))
-        least, most = (_mean_of(_less_inputs(values, terms, w, beds), w, beds) for values in filled)
+        least, most = (_mean_of(_less_inputs(values, terms, w, beds), w, beds, is_event) for values in filled)
         ends = least, most
     why = why or (ONE_BED if known.bed_count == 1 else None)
     share = _point(left, w, answered, like)
@@ -104,10 +111,11 @@ def plain_interval(shares: ArrayLike, bed: ArrayLike) -> confidence.Bounds | Non
     beds, answered, w = confidence.numbered_beds(bed, len(h)), np.isfinite(h), np.ones_like(h)
     if len(np.unique(beds[answered])) < 2:
         return None
-    known = _mean_of(h[answered], w[answered], beds[answered])
+    is_event = bool(np.isin(h[answered], (0.0, 1.0)).all())
+    known = _mean_of(h[answered], w[answered], beds[answered], is_event)
     if answered.all():
         return _interval(known, known)
-    ends = (_mean_of(np.where(answered, h, end), w, beds) for end in (0.0, 1.0))
+    ends = (_mean_of(np.where(answered, h, end), w, beds, is_event) for end in (0.0, 1.0))
     return _outer(_interval(known, known), _interval(*ends))
 
 
@@ -154,10 +162,11 @@ def _mean(values: Array, weights: Array) -> float:
     return float(np.sum(weights * values) / np.sum(weights))
 
 
-def _mean_of(values: Array, weights: Array, beds: Labels) -> _Mean:
+def _mean_of(values: Array, weights: Array, beds: Labels, is_event: bool) -> _Mean:
     """The weighted mean as a plain one, with its error. Source: [Saerndal-1992], section 5.5."""
     mean = _mean(values, weights)
-    return _Mean(mean, mean + weights / weights.mean() * (values - mean), confidence.numbered_beds(beds, len(values)))
+    numbered, part = confidence.numbered_beds(beds, len(values)), part_that_counts(weights)
+    return _Mean(mean, mean + weights / weights.mean() * (values - mean), numbered, part, is_event)
 
 
 def _point(left: Array, weights: Array, answered: NDArray[np.bool_], like: NDArray[np.bool_]) -> float:
@@ -173,17 +182,36 @@ def _interval(least: _Mean, most: _Mean) -> confidence.Bounds:
     errors = least.error, most.error
     freedom, width, error = least.bed_count - 1, max(upper - lower, 0.0), max(errors)
     quantile = confidence.partial_quantile(width, error, freedom) if error > 0.0 else confidence.t_quantile(freedom)
-    low = _certain(lower, least) or confidence.share_interval(lower, quantile * errors[0])
-    high = _certain(upper, most) or confidence.share_interval(upper, quantile * errors[1])
+    low, high = _bounds(lower, least, quantile * errors[0]), _bounds(upper, most, quantile * errors[1])
     return low[0], high[1]
 
 
-def _certain(share: float, of: _Mean) -> confidence.Bounds | None:
-    """Bounds where no run, or every run, has met the event; None elsewhere."""
-    if share not in (0.0, 1.0):
-        return None
-    limit = upper_limit(of.bed_count, confidence.LEVEL)
-    return (0.0, limit) if share == 0.0 else (1.0 - limit, 1.0)
+def _bounds(share: float, of: _Mean, half_width: float) -> confidence.Bounds:
+    """Bounds of one mean; where hardly a landing differs from the others they follow from how many there are."""
+    lower, upper = confidence.share_interval(share, half_width)
+    runs = of.part * len(of.values)
+    # Few that have met an event leave no less open than none; and shares of flights that add up to less than half a
+    # landing do not show how many landings would differ wholly.
+    is_open = of.is_event or min(share, 1.0 - share) * runs < HALF_RUN
+    far = limit_of_counts(np.bincount(of.beds), of.part) if is_open else 0.0
+    near = _of_one_run(runs) if _differs_alone(of.values) else 1.0
+    if share < 0.5:
+        return min(lower, near), max(upper, far)
+    return min(lower, 1.0 - far), max(upper, 1.0 - near)
+
+
+def _differs_alone(values: Array) -> bool:
+    """Whether all values but one are alike."""
+    ordered = np.sort(values)
+    return bool(ordered[0] < ordered[-1] and (ordered[0] == ordered[-2] or ordered[1] == ordered[-1]))
+
+
+def _of_one_run(run_count: float) -> float:
+    """Least probability of an event that one of so many runs has met: its error from beds says nothing of it.
+
+    Source: [Clopper-1934], at a count of 1.
+    """
+    return -math.expm1(math.log(0.5 + 0.5 * confidence.LEVEL) / run_count)
 
 
 def _next_bed(known: _Mean, ends: tuple[_Mean, _Mean], bounds: confidence.Bounds) -> confidence.Bounds | None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.given_numbers import finite_number
+from lithobrake.vocabulary.given_numbers import finite_number, without_rounding
 
 Score = dict[str, Any]
 
@@ -23,17 +23,23 @@ def absolute_percentage_error(predicted: Array, y: Array) -> Array:
         return np.where(error == 0.0, 0.0, 100.0 * error / np.abs(y))
 
 
+def varies(y: Array) -> bool:
+    """Whether values [count] differ by more than rounding."""
+    return bool(np.ptp(without_rounding(y)) > 0.0)
+
+
 def score_of(predicted: Array, y: Array) -> Score:
     """Scores of one output from predicted and true values [count].
 
     ape [%] list; mape [%]; rmse [unit of the output]; std, that of y (population); rrmse = rmse / std;
-    q2 = 1 - rrmse**2, the explained share of the variance. For constant y: rrmse 0 if exact, else infinite.
+    q2 = 1 - rrmse**2, the explained share of the variance. For constant y: rrmse 0 if exact to
+    rounding, else infinite.
     """
     error = predicted - y
     ape = absolute_percentage_error(predicted, y)
     # By rounding the standard deviation of equal values need not be 0.
-    rmse, std = float(np.sqrt(np.mean(error**2))), float(np.std(y)) if np.ptp(y) > 0.0 else 0.0
-    rrmse = rmse / std if std > 0.0 else (0.0 if rmse == 0.0 else float("inf"))
+    rmse, std = float(np.sqrt(np.mean(error**2))), float(np.std(y)) if varies(y) else 0.0
+    rrmse = rmse / std if std > 0.0 else (float("inf") if varies(np.append(predicted, y)) else 0.0)
     return {
         "mape": float(np.mean(ape)),
         "q2": 1.0 - rrmse**2,

@@ -14,7 +14,7 @@ from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.scores import equal_rows
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.given_numbers import LARGEST, numbers_or_nan
+from lithobrake.vocabulary.given_numbers import LARGEST, numbers_or_nan, without_rounding
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def checked_training(
     return Training(
         distributions,
         checked_points(distributions, rows),
-        kept,
+        without_rounding(kept),
         None if counted is None else counted / counted.mean(),
         _names(output_names, kept.shape[1], one_dimensional),
         one_dimensional,
@@ -96,7 +96,7 @@ def check_magnitude(name: str, values: Array) -> None:
     most = float(np.abs(values).max(initial=0.0))
     if most > LARGEST:
         raise ValueError(f"{name} reaches {most:g} in size, but must stay within {LARGEST:g}: give it in a larger unit")
-    spread = np.ptp(values, axis=0) if len(values) else np.zeros(1)
+    spread = np.ptp(without_rounding(values), axis=0) if len(values) else np.zeros(1)
     if ((spread > 0.0) & (spread < 1.0 / LARGEST)).any():
         raise ValueError(
             f"{name} varies by {spread[spread > 0.0].min():g}, but must vary by at least {1.0 / LARGEST:g}, or not at "

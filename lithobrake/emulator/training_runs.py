@@ -13,15 +13,21 @@ from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training_data import check_magnitude
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import FEWEST_RUNS_OF_EMULATOR
-from lithobrake.vocabulary.given_numbers import LARGEST, labels, numbers, numbers_or_nan, random_numbers, whole_number
+from lithobrake.vocabulary.given_numbers import (
+    LARGEST,
+    labels,
+    numbers,
+    numbers_or_nan,
+    random_numbers,
+    whole_number,
+    without_rounding,
+)
 
 WITH_OUTPUTS, WITHOUT_OUTPUTS = "with_outputs", "without_outputs"
 # Fewer residuals than this are no distribution to draw from.
 FEWEST = FEWEST_RUNS_OF_EMULATOR
 # What a coordinate may lose of the range of its output.
 ROUNDING = 1e-4
-# The spread of values that are one but for rounding, in parts of them.
-ALIKE = 1e-13
 
 
 def to_coordinate(y: Array, lower: Array, upper: Array) -> Array:
@@ -202,19 +208,13 @@ def checked_runs(
     check_magnitude("y", table[there])
     low, high = (bound[there] for bound in checked_bounds(lower, upper, (len(table), table.shape[1])))
     carried = _checked_riders(riders, names)
-    group, values = _checked_groups(groups, len(points), there), _without_rounding(table[there])
+    group, values = _checked_groups(groups, len(points), there), without_rounding(table[there])
     runs = TrainingRuns(
         distributions, points, ended, outcome_names, output_outcome, group, values, low, high, names, carried
     )
     _check_inside(runs)
     _check_resolution(runs)
     return runs
-
-
-def _without_rounding(y: Array) -> Array:
-    """Outputs [run_count, output_count]; one whose values differ by their rounding alone is a constant."""
-    alike = np.ptp(y, axis=0) <= ALIKE * np.abs(y).max(axis=0)
-    return np.where(alike, y[0], y)
 
 
 def _check_inside(runs: TrainingRuns) -> None:

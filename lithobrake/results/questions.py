@@ -44,7 +44,7 @@ class LimitStateResult(Inlined):
     emulator: Share | None
     """estimate from the emulator; null if there is none"""
     tail_limit: float
-    """upper limit of the probability of an event that occurred in no run on this number of beds"""
+    """upper limit of the probability of an event that occurred in none of these runs"""
     why: str | None
     """why there is no interval, in a sentence; null where there is one"""
     failing_runs: float

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 # Rows that a notebook shows.
 SHOWN = 10
-FORMAT_VERSION = 3
+FORMAT_VERSION = 4
 NAMES = ("input_names", "output_names", "outcome_names")
 
 
@@ -145,9 +145,9 @@ class ExplorerTables:
 
     Those of an expansion have velocities among their outputs and no azimuth, scatter that grows [output_count] with the
     impact's speed from the runs' scatter_speed [m/s], and chances of outcomes that follow its first terms.
-    group_count: groups of runs that refits draw; interval_reach: standard errors that an interval over them reaches to.
-    bound: numbers of the energy bound, and by dotted key the medians of what it depends on. attitude: None where the
-    law reads none.
+    group_count: groups of runs that refits draw; interval_reach: standard errors that an interval over them reaches to;
+    unseen_limit: share that an event may have which no run has met. bound: numbers of the energy bound, and by dotted
+    key the medians of what it depends on. attitude: None where the law reads none.
     """
 
     tables: "dict[str, NDArray[np.float64]]"
@@ -157,6 +157,7 @@ class ExplorerTables:
     output_outcome: str
     group_count: int
     interval_reach: float
+    unseen_limit: float
     bound: dict[str, float]
     attitude: ExplorerAttitude | None = None
     __repr__ = short_repr
@@ -190,6 +191,7 @@ class ExplorerTables:
                 output_outcome=str(file.attrs["output_outcome"]),
                 group_count=int(file.attrs["group_count"]),
                 interval_reach=float(file.attrs["interval_reach"]),
+                unseen_limit=float(file.attrs["unseen_limit"]),
                 bound=bound,
                 attitude=attitude,
             )

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lithobrake.statements.labels import FAILED, GROUND_WORDS, RUN_WORDS, end_words
+from lithobrake.vocabulary.constants import LARGEST_CORRELATION
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import (
     LEVEL,
@@ -237,8 +238,15 @@ def journey_ends(scope: Scope, results: "Results") -> list[str]:
     """How many landers come to rest, from how many journeys, and how the others end."""
     rests = results.ends[JourneyEnd.AT_REST].share
     main = rest_over(results, scope.journey_time, scope.touchdowns)
-    said = f"{main} ({journey_counts(results)}).{_others(results)}"
+    said = f"{main} ({journey_counts(results)}).{_others(results)}{_all_alike(rests)}"
     return [said] if rests.why_missing is None else [said, rests.why_missing]
+
+
+def _all_alike(rests: Estimate) -> str:
+    """For which correlation an interval holds that no lander, or every lander, at rest leaves."""
+    if rests.lower is None or rests.value not in (0.0, 1.0):
+        return ""
+    return f" The interval holds for a correlation of landers on one bed of up to {LARGEST_CORRELATION:g}."
 
 
 def rest_over(results: "Results", limit: float, touchdowns: int | None) -> str:

@@ -10,6 +10,8 @@ if TYPE_CHECKING:
 
 # Squares of larger numbers, and sums of these, are infinite.
 LARGEST = 1e100
+# Values that differ by less than this part of their size are one value: sums added in another order differ by that.
+ROUNDING = 1e-14
 # Numbers of one array that are made for a caller: of 8 bytes each, so 8.6 GB.
 MOST_NUMBERS = 2**30
 
@@ -82,6 +84,20 @@ def numbers_or_nan(name: str, values: "ArrayLike") -> "NDArray[np.float64]":
 
     array, masked = _floats(name, values)
     return np.where(masked, np.nan, array) if np.any(masked) else array
+
+
+def without_rounding(values: "NDArray[np.float64]") -> "NDArray[np.float64]":
+    """Outputs [run_count] or [run_count, output_count], NaN where a run has none; one that varies by rounding is one.
+
+    The rule knows no unit: an output varies if its values differ by more than `ROUNDING` times the largest of them.
+    """
+    import numpy as np
+
+    if not len(values):
+        return values
+    least, most = np.fmin.reduce(values, axis=0), np.fmax.reduce(values, axis=0)
+    alike = most - least <= ROUNDING * np.maximum(np.abs(least), np.abs(most))
+    return np.where(alike & np.isfinite(values), least, values)
 
 
 def labels(name: str, values: "ArrayLike", count: int, of_what: str) -> "NDArray[Any]":

@@ -33,15 +33,17 @@ def test_the_runs_tell_what_at_least_a_fiftieth_of_them_meets() -> None:
     found, runs = failure_probability(failing(24), BED, drawn=(COUNTS, TOTALS)), share_estimate(failing(24), BED)
     assert (found.source, found.by_runs.share.why_missing) == ("runs", None)
     assert found.probability == runs.share
-    assert found.by_emulator == refit_interval(COUNTS, TOTALS, 24)
+    assert found.by_emulator == refit_interval(COUNTS, TOTALS, 24, 240)
 
 
 def test_the_emulator_tells_what_is_rarer_and_rules_out_no_more_than_so_many_beds() -> None:
     found, runs = failure_probability(failing(2), BED, drawn=(COUNTS // 4, TOTALS)), share_estimate(failing(2), BED)
-    of_emulator = refit_interval(COUNTS // 4, TOTALS, 24)
+    of_emulator = refit_interval(COUNTS // 4, TOTALS, 24, 240)
     assert (found.source, found.probability.value) == ("emulator", of_emulator.value)
-    assert found.tail_limit == upper_limit(24, 0.9) == unseen_limit(BED)
-    assert of_emulator.upper < runs.share.upper == found.probability.upper
+    assert upper_limit(240, 0.9) < found.tail_limit == unseen_limit(BED) < upper_limit(24, 0.9)
+    # Two of 240 runs leave no less open than none of them.
+    assert of_emulator.upper == pytest.approx(found.tail_limit)
+    assert runs.share.upper == found.tail_limit == found.probability.upper
     assert found.probability.lower == of_emulator.lower
     none = failure_probability(failing(0), BED, drawn=(COUNTS // 4, TOTALS))
     assert none.probability.upper == none.tail_limit == none.by_runs.share.upper
@@ -81,7 +83,7 @@ def test_without_an_emulator_the_runs_tell_all() -> None:
         0.0,
         None,
     )
-    assert found.probability.upper == upper_limit(24, 0.9)
+    assert found.probability.upper == unseen_limit(BED)
 
 
 def test_one_bed_has_no_interval_whatever_an_emulator_says() -> None:

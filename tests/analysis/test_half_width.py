@@ -15,6 +15,7 @@ from lithobrake.analysis import (
     next_run_count,
     scatter_of,
     share_estimate,
+    unseen_limit,
 )
 from lithobrake.analysis.half_width import AllOrNothing, LikeRuns, Shares
 from lithobrake.analysis.share_estimate import plain_interval
@@ -27,7 +28,7 @@ BED = np.arange(96) % 24
 
 def test_where_all_come_to_rest_the_half_width_is_that_of_the_upper_limit() -> None:
     found = half_width_range(AllOrNothing(1.0, 1.0), BED)
-    assert found == pytest.approx([0.5 * (1.0 - 0.1 ** (1 / 24))] * 3)
+    assert found == pytest.approx([0.5 * unseen_limit(BED)] * 3)
 
 
 def test_the_range_holds_nine_in_ten_studies() -> None:
@@ -172,8 +173,8 @@ def test_an_outcome_of_yes_or_no_asks_for_more_runs_and_missing_ones_for_more_st
 
 def test_no_event_so_far_is_no_certainty() -> None:
     bed = np.arange(120) % 12
-    # 1 - 0.1^(1/12) is 0.17: a share of up to that may hide behind no event on a dozen beds.
-    assert half_width_of(np.zeros(120), bed) == pytest.approx(0.5 * (1.0 - 0.1 ** (1.0 / 12.0)))
+    # A share of up to 0.06 may hide behind no event in ten runs on each of a dozen beds.
+    assert half_width_of(np.zeros(120), bed) == pytest.approx(0.5 * unseen_limit(bed))
     assert next_run_count(np.zeros(120), bed, 0.02, LARGEST, bed_count_of) == 240
     assert next_run_count(np.zeros(120), bed, 0.09, LARGEST, bed_count_of) is None
     assert scatter_of(np.zeros(120), bed) is None

@@ -4,17 +4,16 @@ import numpy as np
 import pytest
 
 from lithobrake.analysis import (
-    LEVEL,
     OutcomeModel,
     refit_interval,
     sample_inputs,
-    unseen_limit,
-    upper_limit,
     wilson_interval,
 )
+from lithobrake.analysis.unseen_event import even_limit
 from lithobrake.chaos import LogUniform, Uniform
 
 INPUTS = {"young_modulus": LogUniform(1e6, 1e8), "restitution": Uniform(0.2, 0.9)}
+LIMIT = even_limit(19, 9)
 NAMES = ("clear", "captured", "left_sideways")
 
 
@@ -46,32 +45,6 @@ def test_no_runs_and_unknown_outcomes_are_refused() -> None:
         OutcomeModel(INPUTS, np.empty((0, 2)), [], NAMES)
     with pytest.raises(ValueError, match="hold failed; allowed: clear"):
         OutcomeModel(INPUTS, sample_inputs(INPUTS, 2, seed=1), ["clear", "failed"], NAMES)
-
-
-@pytest.mark.parametrize("count", [20, 60, 300])
-def test_the_upper_limit_of_what_no_run_had(count: int) -> None:
-    """With this probability one draw in twenty of so many runs has no event at all."""
-    limit = upper_limit(count)
-    assert (1.0 - limit) ** count == pytest.approx(0.05)
-    assert limit == pytest.approx(3.0 / count, rel=0.1)
-    assert upper_limit(0) == 1.0
-
-
-def test_the_unit_of_what_no_run_had_is_the_bed() -> None:
-    bed = np.repeat(["a", "b", "c"], 40)
-    assert (1.0 - unseen_limit(bed)) ** 3 == pytest.approx(1.0 - LEVEL)
-    assert unseen_limit([]) == 1.0
-
-
-@pytest.mark.parametrize("bed", [None, "abc", 3, [np.nan, 1.0], [None, None], [[1, 2], [3, 4]]])
-def test_what_is_no_label_for_each_run_has_no_limit(bed: object) -> None:
-    with pytest.raises(ValueError, match=r"bed h(as shape|old)"):
-        unseen_limit(bed)  # type: ignore[arg-type]
-
-
-def test_more_units_than_a_float_counts_are_refused() -> None:
-    with pytest.raises(ValueError, match="must be a whole number from 0 to 9007199254740992"):
-        upper_limit(10**400)
 
 
 @pytest.mark.parametrize(("count", "total", "lower", "upper"), [
@@ -143,9 +116,7 @@ def test_what_one_draw_met_has_no_wider_bounds_than_what_none_met() -> None:
     assert sure.lower == pytest.approx(1.0 - rare.upper)
 
 
-@pytest.mark.parametrize(
-    ("met", "lower", "upper"), [(9998, 0.1 ** (1.0 / 9.0), 1.0), (2, 0.0, 1.0 - 0.1 ** (1.0 / 9.0))]
-)
+@pytest.mark.parametrize(("met", "lower", "upper"), [(9998, 1.0 - LIMIT, 1.0), (2, 0.0, LIMIT)])
 def test_what_few_runs_could_not_show_is_bounded_by_their_beds(met: int, lower: float, upper: float) -> None:
     """A fit to 19 runs on 9 beds, all of which ended alike, gives another end 0.02 % and says no more than they do."""
     counts, totals = np.full(50, met // 50.0) + (np.arange(50) < met % 50), np.full(50, 200)

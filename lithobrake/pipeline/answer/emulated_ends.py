@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from lithobrake.analysis import quantile_within, refit_interval, upper_limit
+from lithobrake.analysis import quantile_within, refit_interval
 from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
+from lithobrake.analysis.unseen_event import even_limit
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
@@ -25,7 +26,6 @@ from lithobrake.statements.journeys import emulated_ends as emulated_statement
 from lithobrake.study import Study
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, UNKNOWN_END
 
@@ -183,8 +183,8 @@ class Refits:
         return replace(refit_interval(counts[told], totals[told], self.bed_count, self.run_count), value=share)
 
     def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
-        """The same with bounds of an outcome that no run had from 0 to what so many beds can say of it."""
-        limit = upper_limit(self.bed_count, LEVEL)
+        """The same with bounds of an outcome that no run had from 0 to what so many runs can say of it."""
+        limit = even_limit(self.run_count, self.bed_count)
         for outcome in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
             one = counts[outcome.value]
             if one.share.upper is not None:

@@ -221,8 +221,7 @@ def _on_ground(
     """Every aim on one ground, and the best of those that keep all limits."""
     parts = [_of_aim(landers, row, ground, fitted) for row in range(len(aims))]
     parts = [replace(part, allowed=_keeps(limits, aim, part)) for aim, part in zip(aims, parts, strict=True)]
-    bed_count = fitted.bed_count if ground == "soil" and fitted.why is None else None
-    return _best(landers, parts, bed_count)
+    return _best(landers, parts, fitted if ground == "soil" and fitted.why is None else None)
 
 
 def _of_aim(landers: OptionLanders, row: int, ground: str, fitted: Refits) -> AimOnGround:
@@ -260,21 +259,22 @@ def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> 
 
 
 def _best(
-    landers: OptionLanders, parts: list[AimOnGround], bed_count: int | None
+    landers: OptionLanders, parts: list[AimOnGround], fitted: Refits | None
 ) -> tuple[list[AimOnGround], BestAim | None]:
     """The aims with their shares of refits, and that at which most landers settle, of those allowed.
 
-    None where none is allowed, or nobody settles. bed_count: None where refits tell nothing, as on hard ground; then
+    None where none is allowed, or nobody settles. fitted: None where refits tell nothing, as on hard ground; then
     there is no share of refits and no interval.
     """
     allowed = [part.allowed for part in parts]
     shares = np.where(allowed, [part.settled.value for part in parts], -1.0)
     if shares.max() <= 0.0:
         return parts, None
-    if bed_count is None:
+    if fitted is None:
         return parts, BestAim(int(shares.argmax()), None, None, None, None, None)
     order = np.argsort(landers.refit[0], kind="stable")
-    found = analysis.best_choice(landers.settled[:, order].reshape(len(parts), REFIT_COUNT, -1), bed_count, allowed)
+    settled = landers.settled[:, order].reshape(len(parts), REFIT_COUNT, -1)
+    found = analysis.best_choice(settled, fitted.bed_count, allowed, run_count=fitted.run_count)
     parts = [replace(part, share_of_refits=one) for part, one in zip(parts, found.shares.tolist(), strict=True)]
     others = tuple(aim for aim in found.not_worse if aim != found.best)
     share = float(found.shares[found.best])

@@ -142,6 +142,7 @@ def write_expansion_explorer(job: Job) -> None:
             group_count=int(runs.has_outputs.sum()),
             # Runs on one bed bound no share over other beds.
             interval_reach=float("nan"),
+            unseen_limit=float("nan"),
             bound={IMPACT_SPEED: median(fixed)},
         ),
     )

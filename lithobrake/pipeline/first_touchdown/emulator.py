@@ -222,6 +222,7 @@ def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -
     [rad] that each row was left in.
     """
     from lithobrake.analysis.confidence import t_quantile
+    from lithobrake.analysis.unseen_event import even_limit
     from lithobrake.emulator import law_tables
 
     runs = models[0].runs
@@ -234,6 +235,7 @@ def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -
         output_outcome=runs.outcome_names[runs.output_outcome],
         group_count=groups,
         interval_reach=t_quantile(groups - 1),
+        unseen_limit=even_limit(len(runs.x), groups),
         bound=dict(bound),
     )
 
@@ -245,7 +247,7 @@ def save_explorer(path: Path, explorer: ExplorerTables) -> None:
         for name, table in explorer.tables.items():
             file.create_dataset(name, data=table)
         file.attrs["format_version"] = FORMAT_VERSION
-        for name in (*NAMES, "output_outcome", "group_count", "interval_reach"):
+        for name in (*NAMES, "output_outcome", "group_count", "interval_reach", "unseen_limit"):
             file.attrs[name] = getattr(explorer, name)
         file.attrs["attitude"] = json.dumps(None if explorer.attitude is None else asdict(explorer.attitude))
         for name, value in explorer.bound.items():

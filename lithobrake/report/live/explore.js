@@ -136,8 +136,9 @@ function freedVariance(values, chance) {
 }
 
 // Share and its bounds over beds that were not in the study, as lithobrake.analysis.refit_interval has them; a share of
-// 0 or 1 has no other bounds here. runCount: runs that the law was fitted to.
-function refitInterval(returns, known, bedCount, reach, runCount) {
+// 0 or 1 has no other bounds here. runCount: runs that the law was fitted to; limit: what they leave open of an event
+// that none of them has met (90 %).
+function refitInterval(returns, known, bedCount, reach, runCount, limit) {
   const shares = Array.from(returns, (one, refit) => one / known[refit]), total = meanOf(known) * known.length;
   const chance = meanOf(shares.map((one, refit) => one * (1 - one) / (known[refit] - 1)));
   const share = meanOf(returns) * returns.length / total, between = freedVariance(shares, chance)[1];
@@ -147,8 +148,7 @@ function refitInterval(returns, known, bedCount, reach, runCount) {
     return [share, Math.max(share - half, 0), Math.min(share + half, 1)];
   const odds = share / (1 - share), factor = Math.exp(Math.min(half / (share * (1 - share)), 600));
   const low = odds / factor / (1 + odds / factor), high = odds * factor / (1 + odds * factor);
-  // What so many beds leave open of an event that nobody has met (90 %): few who have leave no more open.
-  const limit = 1 - Math.pow(0.1, 1 / bedCount);
+  // Few runs that have met an event leave no more open than none.
   const isUnseen = Math.min(share, 1 - share) * runCount < 0.5;
   if (share < 0.5) return [share, low, Math.max(Math.min(high, Math.max(share + half, limit)), isUnseen ? limit : 0)];
   return [share, Math.min(Math.max(low, Math.min(share - half, 1 - limit)), isUnseen ? 1 - limit : 1), high];

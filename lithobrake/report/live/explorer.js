@@ -78,7 +78,8 @@ function shareWords(explorer, found) {
   const { facts, law } = explorer, per = (one) => (100 * one).toFixed(1);
   const sum = (list) => list.reduce((all, one) => all + one, 0);
   if (!sum(found.known)) return "No sample has a known outcome.";
-  const [share, low, high] = refitInterval(found.returns, found.known, facts.bedCount, facts.reach ?? 0, law.rowCount);
+  const runs = [facts.bedCount, facts.reach ?? 0, law.rowCount, facts.unseenLimit];
+  const [share, low, high] = refitInterval(found.returns, found.known, ...runs);
   const interval = facts.reach ? ` (90 % interval of the emulator: ${per(low)} to ${per(high)} %)` : "";
   return `${per(share)} % ${facts.action}${interval}`;
 }

@@ -89,6 +89,7 @@ def explorer_sections(data: PageData) -> list[LiveSection]:
     )
     facts = law_facts(explorer, moved, samples.table) | _flight_facts(data, bool(count))
     facts["reach"] = explorer.interval_reach if over_beds else None
+    facts["unseenLimit"] = explorer.unseen_limit if over_beds else None
     note = f"{words}{bands} {flown_words}"
     return [
         explorer_section("explorer", "Explorer of the first touchdown", note, facts, explorer, flown if count else None)
@@ -220,6 +221,7 @@ def touchdown_sections(data: PageData) -> list[LiveSection]:
         "holds": True,
         "action": "come to rest at this touchdown",
         "reach": explorer.interval_reach if over_beds else None,
+        "unseenLimit": explorer.unseen_limit if over_beds else None,
     }
     note = f"{_what(explorer, fitted, beds)} {_law(explorer)} {emulator_bands(explorer, over_beds)} "
     return [explorer_section("touchdown-explorer", "Explorer of any touchdown", note, facts, explorer)]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import lithobrake
+from lithobrake.analysis.unseen_event import even_limit
 from lithobrake.pipeline.answer.question_answers import limit_state_results
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
@@ -53,7 +54,8 @@ def test_a_common_limit_state_is_told_by_the_runs_and_a_rare_one_by_the_emulator
         truth = share_faster(speed)
         assert found[name]["lower"] < truth < found[name]["upper"], (name, truth)
     rare = found["fastest"]
-    assert rare["tail_limit"] == pytest.approx(1.0 - 0.1 ** (1.0 / 12.0))
+    # Of 150 landings on 12 beds, the same with 12 or with 13 on each.
+    assert even_limit(156, 12) < rare["tail_limit"] < even_limit(144, 12)
     assert rare["upper"] >= rare["tail_limit"]
 
 

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 from lithobrake import emulator
 from lithobrake.analysis import refit_interval
 from lithobrake.analysis.confidence import t_quantile
+from lithobrake.analysis.unseen_event import even_limit
 from lithobrake.chaos import (
     Beta,
     Empirical,
@@ -127,8 +128,14 @@ def test_an_interval_is_that_of_python(share: float, run_count: int) -> None:
         found = answer_of(
             ALL,
             """const [returns, known] = [given.returns, given.known].map((list) => Float64Array.from(list));
-            return refitInterval(returns, known, 12, given.reach, given.runs);""",
-            {"returns": returns.tolist(), "known": known.tolist(), "reach": t_quantile(11), "runs": run_count},
+            return refitInterval(returns, known, 12, given.reach, given.runs, given.limit);""",
+            {
+                "returns": returns.tolist(),
+                "known": known.tolist(),
+                "reach": t_quantile(11),
+                "runs": run_count,
+                "limit": even_limit(run_count, 12),
+            },
         )
         known_to_python = refit_interval(returns, known, 12, run_count)
         bounds = [known_to_python.value, known_to_python.lower, known_to_python.upper]

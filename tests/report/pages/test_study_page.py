@@ -91,6 +91,18 @@ def test_the_answer_names_the_fraction_at_rest_first_and_then_all_that_is_asked(
     assert any("largest total Sobol index" in one for one in behind)
 
 
+def test_where_all_landers_end_alike_the_answer_says_for_which_correlation_its_interval_holds(asked: PageData) -> None:
+    results, rests = asked.results, JourneyEnd.AT_REST
+    scope = Scope(
+        has_soil=True, bed_count=12, one_place=False, random_attitude=True, has_scatter=False, flight_time=3600.0,
+        journey_time=172_800.0, to_rest=True,
+    )  # fmt: skip
+    words = "The interval holds for a correlation of landers on one bed of up to 0.5."
+    for share, lower, is_said in ((1.0, 0.9, True), (0.98, 0.9, False), (1.0, None, False)):
+        ends = {**results.ends, rests: CountedShare(48, Estimate(share, lower, None if lower is None else 1.0))}
+        assert (words in study_answer(scope, replace(results, ends=ends))[0]) is is_said
+
+
 def test_a_study_that_asks_for_no_more_shows_no_more(asked: PageData) -> None:
     content = study_content(alone(asked))
     names = {plot.name for plot in content.plots}
