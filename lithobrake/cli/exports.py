@@ -138,3 +138,49 @@ def sites(
     beside = ", ".join(one.name for one in paths[1:])
     lines = [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"]
     arguments.tell_result(json, json_values(found), lines)
+
+
+@arguments.command(arguments.LOOK, "search runs/study --images images.csv --field-deg 5.5 --image-pixels 1020")
+def search(
+    folder: arguments.StudyDirectory,
+    images: Annotated[
+        Path,
+        typer.Option(
+            "--images",
+            metavar="FILE.csv",
+            help="Images that could be taken: time, x_m, y_m, z_m of the orbiter, sun_x, sun_y, sun_z; body-fixed.",
+            show_default=False,
+        ),
+    ],
+    field_deg: Annotated[float, typer.Option(help="Full field of view of the camera, degrees.", show_default=False)],
+    image_pixels: Annotated[int, typer.Option(help="Pixels across it.", min=1, show_default=False)],
+    lander_pixels: Annotated[float, typer.Option(help="Pixels along the lander by which it is recognised.")] = 3.0,
+    emission_deg: Annotated[
+        float, typer.Option(help="Largest angle between ground normal and camera, degrees.")
+    ] = 75.0,
+    sun_deg: Annotated[float, typer.Option(help="Least elevation of the Sun above the ground, degrees.")] = 5.0,
+    size: Annotated[
+        float | None, typer.Option(help="Longest extent of the lander, m; default: by the study file.")
+    ] = None,
+    count: Annotated[int, typer.Option("--count", metavar="N", help="Most images.", min=1)] = 20,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of both files; default: DIR.")
+    ] = None,
+    force: arguments.Force = False,
+) -> None:
+    """Order images of an orbiter by the chance that they show a lost lander. Writes search.csv and search.png."""
+    import math
+
+    from lithobrake.pipeline import search_lander, search_lines, write_search
+    from lithobrake.pipeline.commands.lander_search import FIGURE, TABLE
+    from lithobrake.results import open_study
+    from lithobrake.smallbody import Camera
+
+    results, place = open_study(folder), out or folder
+    for name in (TABLE, FIGURE):
+        arguments.refuse_written(place / name, force)
+    field = math.radians(field_deg)
+    camera = Camera(field, field / image_pixels, lander_pixels, math.radians(emission_deg), math.radians(sun_deg))
+    found = search_lander(results, images, camera, count=count, size=size)
+    paths = write_search(found, camera, place)
+    arguments.tell([*search_lines(found), *(f"Wrote {path}" for path in paths)])

@@ -2,6 +2,10 @@ from .commands.comparison import compare_studies as compare_studies
 from .commands.comparison import comparison_files as comparison_files
 from .commands.comparison import comparison_lines as comparison_lines
 from .commands.comparison import write_compared as write_compared
+from .commands.lander_search import LanderSearch as LanderSearch
+from .commands.lander_search import search_lander as search_lander
+from .commands.lander_search import search_lines as search_lines
+from .commands.lander_search import write_search as write_search
 from .commands.one_lander import OneJourney as OneJourney
 from .commands.one_lander import OneLanding as OneLanding
 from .commands.one_lander import energy_gained as energy_gained

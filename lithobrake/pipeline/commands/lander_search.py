@@ -1,0 +1,192 @@
+"""Where to look for the lander of a study: image windows of an orbiter by the chance that they show it."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from lithobrake.analysis.share_estimate import plain_interval
+from lithobrake.files.atomic import atomic_path, write_rows
+from lithobrake.files.reading import read_table
+from lithobrake.study import read_study
+from lithobrake.study.lander_section import LanderSection
+from lithobrake.study.quantity import Uncertain
+from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.file_names import STUDY_FILE
+from lithobrake.vocabulary.number_words import with_interval
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.plain_text import show
+
+if TYPE_CHECKING:
+    from lithobrake.results.study_results import StudyResults
+    from lithobrake.smallbody.image_windows import Camera, ImageWindow
+
+TABLE, FIGURE = "search.csv", "search.png"
+COLUMNS = (
+    "rank", "image", "time", "boresight_x", "boresight_y", "boresight_z", "latitude_deg [deg]", "longitude_deg [deg]",
+    "distance [m]", "pixel [m]", "gain", "found", "found_lower", "found_upper",
+)  # fmt: skip
+REMEDY = "give a table (CSV) with the columns time, x_m, y_m, z_m, sun_x, sun_y, sun_z: body-fixed, a row an image"
+
+
+class Images(NamedTuple):
+    """Images that could be taken: time in words, place of the orbiter [m] and direction of the Sun, [image_count, 3]."""
+
+    time: list[str]
+    orbiter: Floats
+    sun: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class LanderSearch:
+    """The windows of a search, and what they add up to.
+
+    latitude, longitude: places of rest [deg], [count]; first: number of the window that shows each place first, -1 for
+    none, [count]; found: chance that the windows up to each show the lander, of landers at rest; centre: latitude and
+    longitude [deg] of the mean of the places that each window shows, [window_count, 2]; images: number of all; ever:
+    chance that all images together, each pointed everywhere, would show it.
+    """
+
+    windows: "list[ImageWindow]"
+    images: Images
+    latitude: Floats
+    longitude: Floats
+    first: np.ndarray
+    found: list[Estimate]
+    centre: Floats
+    distance: Floats
+    ever: float
+
+
+def search_lander(
+    results: "StudyResults", images: Path, camera: "Camera", *, count: int = 20, size: float | None = None
+) -> LanderSearch:
+    """Order the images of a table by the chance that they show the lander of a study, at rest on its body.
+
+    count: most windows; size [m]: longest extent of the lander, None: by the study file. Raises ValueError for a table
+    that is none, a lander without a size, a study without landers at rest, and where no image shows any place.
+    """
+    from lithobrake.smallbody.image_windows import image_windows, recognised
+    from lithobrake.smallbody.shape import Shape
+
+    given = read_images(images)
+    shape = Shape(*results.body_shape)
+    table = results.journeys
+    rest = table["end"] == JourneyEnd.AT_REST
+    if not rest.any():
+        raise ValueError(f"{results.folder} has no lander at rest; there is nothing to look for")
+    places = np.column_stack([table[f"position_{axis}"][rest] for axis in "xyz"]).astype(np.float64)
+    _refuse_inside(shape, given, images)
+    up = shape.normals[shape.nearest(places)[1]]
+    extent = size or lander_size(read_study(results.folder / STUDY_FILE).lander)
+    shown, toward = recognised(shape, places, up, given.orbiter, given.sun, extent, camera)
+    windows = image_windows(shown, toward, np.ones(len(places)), camera.field, count)
+    if not windows:
+        raise ValueError(
+            f"none of the {len(given.time)} images of {images} shows a place of rest: too dark, hidden, or too far for "
+            f"{camera.pixels:g} pixels on {extent:g} m; give other images, or fewer --lander-pixels"
+        )
+    bed, latitude, longitude = (table[name][rest] for name in ("bed", "latitude_deg", "longitude_deg"))
+    return _summed(windows, given, (latitude, longitude), places, bed, float(shown.any(axis=1).mean()))
+
+
+def _summed(
+    windows: "list[ImageWindow]", images: Images, rest: tuple[Floats, Floats], places: Floats, bed: np.ndarray,
+    ever: float,
+) -> LanderSearch:  # fmt: skip
+    first, found, centre, distance = np.full(len(places), -1), [], [], []
+    for number, window in enumerate(windows):
+        first[(first < 0) & window.shown] = number
+        hits = (first >= 0).astype(np.float64)
+        lower, upper = plain_interval(hits, bed) or (None, None)
+        found.append(Estimate(float(hits.mean()), lower, upper))
+        middle = places[window.shown].mean(axis=0)
+        centre.append(np.degrees([np.arctan2(middle[2], np.hypot(*middle[:2])), np.arctan2(middle[1], middle[0])]))
+        distance.append(float(np.linalg.norm(images.orbiter[window.image] - middle)))
+    return LanderSearch(windows, images, *rest, first, found, np.array(centre), np.array(distance), ever)
+
+
+def read_images(path: Path) -> Images:
+    """Read a table of images. Raises ValueError with the row of what is wrong."""
+    names = ("time", *(f"{axis}_m" for axis in "xyz"), *(f"sun_{axis}" for axis in "xyz"))
+    rows = read_table(path, names, REMEDY).rows
+    if not rows:
+        raise ValueError(f"{path} has no images; {REMEDY}")
+    values = np.full((len(rows), 6), np.nan)
+    for number, row in enumerate(rows):
+        for column, name in enumerate(names[1:]):
+            try:
+                values[number, column] = float(row[name])
+            except ValueError:
+                pass
+            if not np.isfinite(values[number, column]):
+                raise ValueError(
+                    f"{path}, row {number + 1}: {name} is {show(row[name])}; allowed: a finite number; correct it"
+                )
+        if not values[number, 3:].any():
+            raise ValueError(
+                f"{path}, row {number + 1}: the Sun has no direction; allowed: sun_x to sun_z that are not all 0"
+            )
+    return Images([row["time"] for row in rows], values[:, :3], values[:, 3:])
+
+
+def _refuse_inside(shape: "object", images: Images, path: Path) -> None:
+    """Raise ValueError for an orbiter that is below the ground."""
+    height = shape.height(images.orbiter)  # type: ignore[attr-defined]
+    if (height <= 0.0).any():
+        row = int(np.argmin(height))
+        raise ValueError(
+            f"{path}, row {row + 1}: the orbiter is {-height[row]:.3g} m below the ground; allowed: above it, in metres "
+            "from the centre of the body, in its own axes; correct it"
+        )
+
+
+def lander_size(lander: LanderSection) -> float:
+    """The longest extent of a lander's main shape [m]. Raises ValueError for a mesh, whose extent is not in the study."""
+    if lander.edges is not None:
+        return max(lander.edges)
+    if lander.diameter is None:
+        raise ValueError(
+            "the lander is a mesh, and its size for the search is unknown; give its longest extent: --size"
+        )
+    return lander.diameter.median if isinstance(lander.diameter, Uncertain) else lander.diameter
+
+
+def write_search(search: LanderSearch, camera: "Camera", folder: Path) -> tuple[Path, Path]:
+    """Write the windows as a table and as a map into a folder; returns both files."""
+    from lithobrake.report.figures.search_figure import search_figure
+    from lithobrake.report.figures.style import figure_style
+
+    rows = []
+    for rank, window in enumerate(search.windows):
+        found, far = search.found[rank], search.distance[rank]
+        bounds = ["" if one is None else one for one in (found.lower, found.upper)]
+        rows.append([
+            rank + 1, window.image + 1, search.images.time[window.image], *window.boresight.tolist(),
+            *search.centre[rank].tolist(), far, far * camera.pixel, window.gain / len(search.first), found.value, *bounds,
+        ])  # fmt: skip
+    table, picture = folder / TABLE, folder / FIGURE
+    write_rows(table, list(COLUMNS), iter(rows))
+    with figure_style(), atomic_path(picture) as draft:
+        search_figure(search.latitude, search.longitude, search.first, search.centre).savefig(
+            draft, format="png", metadata={"Software": None}
+        )
+    return table, picture
+
+
+def search_lines(search: LanderSearch) -> list[str]:
+    """The search in sentences and a line for each of the first windows."""
+    count = len(search.windows)
+    lines = [
+        f"{count} of {len(search.images.time)} images show the lander with a probability of "
+        f"{with_interval(search.found[-1])}, given that it is at rest on the body; all of them together could show "
+        f"{search.ever:.0%}."
+    ]
+    lines += [
+        f"  {rank + 1}. {search.images.time[window.image]}: toward {search.centre[rank][0]:.1f} deg, "
+        f"{search.centre[rank][1]:.1f} deg; found by then {with_interval(search.found[rank])}"
+        for rank, window in enumerate(search.windows[:10])
+    ]
+    return lines
