@@ -42,6 +42,11 @@ END_SIGNS = {
 END_ROWS = {"at_rest": "at rest or not", "time_s": "time to rest", "distance_m": "distance from\nthe aim point"}
 
 
+def end_rows(results: "Results") -> dict[str, str]:
+    """The rows of the figure of what the ends vary in."""
+    return {name: END_ROWS.get(name, name) for name in results.end_variance_shares}
+
+
 def times_and_distances(rest: "JourneyRest") -> list[str]:
     """When those at rest came to rest, and how far away; nothing where none did."""
     if not (rest.time_s.median.is_known and rest.distance_m.median.is_known):
@@ -222,7 +227,8 @@ def attitude(rest: "JourneyRest") -> str:
 def end_variance(results: "Results") -> str:
     """The figure of what decides the ends; empty where the journeys cannot tell."""
     known = {name: one for name, one in results.end_variance_shares.items() if one}
-    said = [variance_parts(f"{END_SIGNS[name]} ({one.of})", detected_parts(one)) for name, one in known.items()]
+    signs = {name: END_SIGNS.get(name, f"whether it meets {name}") for name in known}
+    said = [variance_parts(f"{signs[name]} ({one.of})", detected_parts(one)) for name, one in known.items()]
     if said:
         said.append(
             "Delivery: position and velocity of the first impact, without attitude. Everything else includes all later "

@@ -7,7 +7,7 @@ import pytest
 
 from lithobrake.emulator import fitting, law, mean_law, ridge_ladder
 from lithobrake.pipeline import site_grid
-from lithobrake.pipeline.answer import emulated_ends, question_answers
+from lithobrake.pipeline.answer import emulated_ends, journey_limit_states, option_answers, question_answers
 from lithobrake.pipeline.commands import site_maps
 from lithobrake.pipeline.expansion import expansion_samples
 from lithobrake.pipeline.first_touchdown import emulator
@@ -16,7 +16,8 @@ from lithobrake.pipeline.journeys import delivery_options, emulated_journeys, fi
 # Refits of an emulator, where studies have fifty.
 REFITS = 20
 WITH_REFITS = (
-    site_grid, emulated_ends, question_answers, site_maps, expansion_samples, emulator, delivery_options,
+    site_grid, emulated_ends, question_answers, option_answers, journey_limit_states, site_maps, expansion_samples,
+    emulator, delivery_options,
     first_arrivals, touchdown_emulator,
 )  # fmt: skip
 

@@ -31,7 +31,9 @@ from lithobrake.pipeline.answer.journey_ends import (
     soil_shares,
     with_journeys,
 )
-from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
+from lithobrake.pipeline.answer.journey_limit_states import journeys_met
+from lithobrake.pipeline.answer.option_answers import aim_results
+from lithobrake.pipeline.answer.question_answers import limit_state_results
 from lithobrake.pipeline.answer.run_answers import described, output_ranges, scope, why_no_interval
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, SPLIT, no_return_fraction, parts_of_journeys
 from lithobrake.pipeline.answer.sample_results import (
@@ -56,6 +58,7 @@ from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.soil import grain
 from lithobrake.touchdown.touchdown_model import stored_bed
 from lithobrake.vocabulary.file_names import RUNS_FILE, SUMMARY_FILE
+from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import (
     DRAWN_DESIGNS,
     IMPACT_SPEED,
@@ -149,7 +152,7 @@ def write_summary(job: Job) -> None:
     results = replace(
         results,
         emulator=_emulator(job, results),
-        limit_states=limit_state_results(job, results.shares.outcomes),
+        limit_states=limit_state_results(job, results.shares.outcomes, results.ends),
         hard_ground=followed_results(job),
     )
     results = replace(results, answer=tuple(study_answer(over, results)))
@@ -220,7 +223,13 @@ def _of_landers(job: Job, found: Results) -> Results:
     plain = end_shares(study, table)
     emulated, ends = emulated_ends(job, table, plain) if study.journey.emulated_count else (None, plain)
     # A lander that is flown to the ground may miss it: the first touchdowns are of those that do not.
-    landed = table.taken(runs.inputs["journey"].astype(int))
+    journeys = runs.inputs["journey"].astype(int)
+    landed, states = table.taken(journeys), map(LimitState.of, study.limit_states.conditions().values())
+    met = {
+        name: journeys_met(study, folder, table, state)[journeys]
+        for name, state in zip(study.limit_states.conditions(), states, strict=True)
+        if state.journey
+    }
     distinct = DesignRuns.distinct([runs, *(DesignRuns.load(folder, design) for design in _side_designs(study))])
     return replace(
         found,
@@ -233,7 +242,7 @@ def _of_landers(job: Job, found: Results) -> Results:
         shares=estimates.shares,
         flights=replace(found.flights, impacts=estimates.flights),
         variance_shares=estimates.variance_shares,
-        end_variance_shares=parts_of_journeys(job, runs, landed),
+        end_variance_shares=parts_of_journeys(job, runs, landed, met),
         outputs=estimates.outputs,
         runs=estimates.runs,
         outputs_of_runs=output_ranges(distinct),

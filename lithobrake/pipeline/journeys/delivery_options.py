@@ -20,8 +20,7 @@ from lithobrake.study.design_sections import SIDE
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EMULATOR_FILE
-from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, UNKNOWN_END, Row
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, REST_NUMBERS, UNKNOWN_END, Row
 
 SITE = "site."
 
@@ -32,7 +31,8 @@ def option_files(study: Study) -> list[str]:
 
 
 def option_dependencies(study: Study) -> Any:
-    return [study.aim.grid, study.aim.sides, study.aim.lander_count, hard_ground_dependencies(study)]
+    own = [study.aim.grid, study.aim.sides, study.aim.lander_count, AIM_COLUMNS]
+    return [*own, hard_ground_dependencies(study)]
 
 
 def follow_options(job: Job) -> None:
@@ -61,12 +61,11 @@ def _rows(job: Job, ground: str, landers: StudyLanders | None) -> list[list[Any]
     count = job.study.aim.lander_count * REFIT_COUNT
     if landers is None:
         total = count * len(job.study.aim.aims())
-        return [[ground, one // count, one % REFIT_COUNT, UNKNOWN_END, 0.0, ""] for one in range(total)]
-    columns = (landers.begin.refit, landers.end, landers.time, landers.ways_from_aims)
-    return [
-        [ground, one // count, refit, end, time, way if end == JourneyEnd.AT_REST else ""]
-        for one, (refit, end, time, way) in enumerate(zip(*(column.tolist() for column in columns), strict=True))
-    ]
+        nothing = [""] * (len(REST_NUMBERS) - 1)
+        return [[ground, one // count, one % REFIT_COUNT, UNKNOWN_END, 0.0, *nothing] for one in range(total)]
+    columns = zip(landers.begin.refit.tolist(), landers.end.tolist(), strict=True)
+    rest = landers.rest_rows(landers.ways_from_aims)
+    return [[ground, one // count, *both, *row] for one, (both, row) in enumerate(zip(columns, rest, strict=True))]
 
 
 def option_arrivals(design: DrawnDesign) -> Arrivals:

@@ -127,9 +127,12 @@ def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, mos
     found = follow_emulated(job, emulator, begin, f"{name} landers by the emulator", most)
     columns = (
         *(begin.number, begin.refit, found.landers.end, (found.beyond != "").astype(int)),
-        *(found.landings, found.landers.time),
+        found.landings,
     )
-    return [[name, *row] for row in zip(*(one.tolist() for one in columns), strict=True)]
+    # As of the journeys, also where each lander has an aim of its own.
+    rest = found.landers.rest_rows(job.design.site.ways_from_aim(found.landers.position))
+    rows = zip(*(one.tolist() for one in columns), strict=True)
+    return [[name, *row, *numbers] for row, numbers in zip(rows, rest, strict=True)]
 
 
 @dataclass(frozen=True)

@@ -195,7 +195,7 @@ def end_shares(data: PageData) -> list[ShareBar]:
 
 def _draw_ends(data: PageData) -> "Figure":
     known = {name: one for name, one in data.results.end_variance_shares.items() if one}
-    return variance_figure(known, words.END_ROWS, LEVEL)
+    return variance_figure(known, words.end_rows(data.results), LEVEL)
 
 
 def time_spread(journeys: PageJourneys) -> RestSpread:
