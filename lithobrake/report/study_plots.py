@@ -94,7 +94,7 @@ class StudyPlots:
         page = self._page
         shares, rows = page.results.variance_shares, first_touchdown.RETURNS_ROW
         if page.to_rest:
-            shares, rows = {name: one for name, one in page.results.end_variance_shares.items() if one}
+            shares = {name: one for name, one in page.results.end_variance_shares.items() if one}
             rows = end_rows(page.results)
         known = [one for one in shares.values() if one]
         if not known:

@@ -60,6 +60,9 @@ class LimitStateResult(Inlined):
     """of a journey: whether landings and emulator agree within their joint intervals; null without both"""
     radius_m: float | None = None
     """distance from the aim point within which a lander at rest meets it [m]; null for another condition"""
+    if_aimed: Share | None = None
+    """with such a distance: the probability if all places of rest moved by the mean miss (results.rest.miss), so that
+    their mean were the aim point; null where this mean cannot be distinguished from the aim point"""
     over_grounds: Share | None = None
     """of a journey, with ground.unknown = "everywhere" or "both": the probability over all grounds, with bounds that
     hold that of one ground; null without"""

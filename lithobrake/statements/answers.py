@@ -21,10 +21,10 @@ from lithobrake.statements.ends import (
 from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
 from lithobrake.statements.expansion import TellingNumbers, error_words, noise, telling_sentences
 from lithobrake.statements.grounds import by_kind, finer, one_ground, over_grounds
-from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
-from lithobrake.statements.limits import met_words, rare_warnings
+from lithobrake.statements.journeys import mean_miss, rest_sentences, sky, soils, time_unit
+from lithobrake.statements.limits import met_words, rare_warnings, shown_probability
 from lithobrake.vocabulary.constants import CENTIMETRES
-from lithobrake.vocabulary.number_words import fixed, number, part, percent, span, time_limit, with_interval
+from lithobrake.vocabulary.number_words import fixed, number, part, percent, time_limit, with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 if TYPE_CHECKING:
@@ -55,7 +55,9 @@ def _main_answer(scope: Scope, results: "Results") -> list[str]:
         return sample_ends(scope, results) or telling_sentences(results, has_scatter=scope.has_scatter)[:1]
     if scope.to_rest and results.rest is not None:
         asked = [one.statement for one in results.limit_states.values() if one.of_journey]
-        ends = [*journey_ends(scope, results), *asked, *rest_sentences(results.rest)]
+        asks_aim = scope.is_flown or any(one.radius_m is not None for one in results.limit_states.values())
+        aimed = [mean_miss(results.rest.miss)] if asks_aim and results.rest.miss is not None else []
+        ends = [*journey_ends(scope, results), *asked, *aimed, *rest_sentences(results.rest)]
     else:
         ends = landing_ends(scope, results)
     grounds = [*over_grounds(results.over_grounds), *by_kind(results.grounds), *finer(results.finer_ground)]
@@ -92,7 +94,7 @@ def page_answer(data: "PageData") -> str:
     if data.to_rest:
         journey = data.study["journey"]
         within = [
-            f" {with_interval(one.probability)} {met_words(name, one)}."
+            f" {with_interval(shown_probability(one))} {met_words(name, one)}."
             for name, one in results.limit_states.items()
             if one.radius_m is not None
         ]
@@ -241,16 +243,10 @@ def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
 
 def _asked(name: str, one: "LimitStateResult") -> Tile:
     """The probability of a limit state of journeys, and where it lies on one ground."""
-    found, over = one.probability, one.over_grounds
-    ends = ", ".join(
-        words
-        for words in (
-            labels.share_interval(found),
-            "" if over is None or over.bounds is None else f"on one ground {span(*over.bounds)}",
-        )
-        if words
-    )
-    return Tile(labels.bare_share(found), "%", met_words(name, one) + (f" ({ends})" if ends else ""))
+    found = shown_probability(one)
+    interval, where = labels.share_interval(found), "" if one.over_grounds is None else ", on one ground"
+    ends = f" ({interval}{where})" if interval else ""
+    return Tile(labels.bare_share(found), "%", f"{met_words(name, one)}{ends}")
 
 
 def _region(one: "RestRegion") -> Tile:

@@ -13,7 +13,6 @@ from lithobrake.vocabulary.number_words import (
     number,
     percent,
     rare_percent,
-    span,
     thousands,
     with_interval,
 )
@@ -37,11 +36,18 @@ def met_words(name: str, found: "LimitStateResult") -> str:
     return f"meet {name} ({found.condition})"
 
 
+def shown_probability(found: "LimitStateResult") -> "Estimate":
+    """The probability with the interval that the answer has; where the ground is unknown it is that of one ground."""
+    over = found.over_grounds
+    return found.probability if over is None or found.source == "emulator" else over
+
+
 def journey_state(name: str, found: "LimitStateResult") -> str:
     """The probability of a limit state of journeys: by landings and emulator, by ground, and its inputs."""
-    one, runs = found.probability, found.runs
+    one, runs = shown_probability(found), found.runs
     words = met_words(name, found) + ("" if found.radius_m is None else f" ({name})")
-    said = [f"{with_interval(one, level=one.level)} of the landers {words}"]
+    where = "" if found.over_grounds is None else " over the grounds that the study allows"
+    said = [f"{with_interval(one, level=one.level)} of the landers {words}{where}"]
     if found.source == "emulator":
         said[0] += f", from the emulator, since {found.failing_runs:.3g} journeys that meet it are too few or too many"
     else:
@@ -50,11 +56,10 @@ def journey_state(name: str, found: "LimitStateResult") -> str:
         said[0] += f"; the emulator gives {with_interval(found.emulator)}{verdict}" if found.emulator else ""
     if one.bounds is None and found.why:
         said[0] += f"; no interval: {found.why.rstrip('.')}"
+    if found.if_aimed is not None:
+        said[0] += f"; with the mean on the aim point it would be {with_interval(found.if_aimed)}"
     if runs.missing > 0.0:
         said.append(f"{unknown_outcome(runs.missing)}, and the interval holds whatever became of them")
-    over = found.over_grounds
-    if over is not None and over.bounds is not None:
-        said.append(f"One ground of these gives, with {percent(over.level)} probability, {span(*over.bounds)}")
     if found.grounds:
         kinds = ", ".join(f"{kind} {with_interval(share)}" for kind, share in found.grounds.items())
         said.append(f"By kind of ground: {kinds}")

@@ -43,6 +43,8 @@ JOURNEY_NUMBERS = {
     "touchdowns": JourneyNumber(1.0, math.inf, "", is_whole=True),
     **dict.fromkeys(SKY_HOURS, JourneyNumber(0.0, 24.0, "h")),
 }
+# Those that a place on the ground decides.
+PLACE = frozenset({"distance", "latitude_deg", "longitude_deg"})
 # One that failed has no known end.
 JOURNEY_WORDS = tuple(end.value for end in JourneyEnd if end != JourneyEnd.FAILED)
 FACE = "face"

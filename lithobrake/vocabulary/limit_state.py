@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from lithobrake.vocabulary.journey_names import FACE, JOURNEY_NUMBERS, JOURNEY_WORDS, face_word
+from lithobrake.vocabulary.journey_names import FACE, JOURNEY_NUMBERS, JOURNEY_WORDS, PLACE, face_word
 from lithobrake.vocabulary.outcomes import FATES
 from lithobrake.vocabulary.plain_text import closest
 from lithobrake.vocabulary.quantities import SIDES, TOUCHDOWN
@@ -106,6 +106,11 @@ class LimitState:
                 f"{first[0]} is of the first touchdown, and {own[0]} of the whole journey; write two limit states"
             )
         return cls(text, condition, (), (), tuple(known))
+
+    @property
+    def has_area(self) -> bool:
+        """Whether it depends on where a lander rests."""
+        return bool(PLACE & {*self.journey})
 
     @property
     def radius(self) -> float | None:

@@ -13,6 +13,7 @@ from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.mean_miss import mean_miss, rest_offsets
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.answer.run_estimates import inputs_of_journeys
 from lithobrake.pipeline.job import Job
@@ -106,6 +107,7 @@ def journey_limit_state(job: Job, name: str, state: LimitState, table: JourneyTa
         of_journey=True,
         agrees=_agrees(by_runs.share, found.by_emulator),
         radius_m=state.radius,
+        if_aimed=_if_aimed(job, state, met, table, why),
         over_grounds=share_over_grounds(met, table.bed, why=why) if is_one else None,
         grounds=kinds,
     )
@@ -132,6 +134,19 @@ def _with_unknown(one: Estimate, unknown: float) -> Estimate:
     if one.lower is None or one.upper is None:
         return one
     return replace(one, lower=(1.0 - unknown) * one.lower, upper=(1.0 - unknown) * one.upper + unknown)
+
+
+def _if_aimed(job: Job, state: LimitState, met: np.ndarray, table: JourneyTable, why: str | None) -> Estimate | None:
+    """The probability of resting within a distance of the mean of the landers at rest.
+
+    None for other limit states, and where this mean cannot be told from the aim point.
+    """
+    places, miss = rest_offsets(job, table), mean_miss(job, table)
+    if state.radius is None or places is None or miss is None or not miss.is_distinct:
+        return None
+    away = np.linalg.norm(places - np.nanmean(places, axis=0), axis=1)
+    near = np.where(np.isnan(met), np.nan, table.rests & (away < state.radius))
+    return analysis.share_estimate(near, table.bed, why=why).share
 
 
 def _agrees(landings: Estimate, emulator: Estimate | None) -> bool | None:

@@ -32,6 +32,7 @@ from lithobrake.pipeline.answer.journey_ends import (
     with_journeys,
 )
 from lithobrake.pipeline.answer.journey_limit_states import journeys_met
+from lithobrake.pipeline.answer.mean_miss import mean_miss
 from lithobrake.pipeline.answer.option_answers import aim_results
 from lithobrake.pipeline.answer.question_answers import limit_state_results
 from lithobrake.pipeline.answer.run_answers import described, output_ranges, scope, why_no_interval
@@ -236,7 +237,7 @@ def _of_landers(job: Job, found: Results) -> Results:
         ends=ends,
         journeys=len(table.end),
         touchdowns=table.touchdowns,
-        rest=journey_rest(study, table),
+        rest=replace(journey_rest(study, table), miss=mean_miss(job, table)),
         delivery=delivery_results(job, runs, len(table.end)),
         returns=estimates.returns,
         shares=estimates.shares,
