@@ -5,7 +5,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from lithobrake.study.delivery_sections import arrival_key
+from lithobrake.study.delivery_sections import FAR, FAST, OFFSETS, VELOCITY_OFFSETS, arrival_key
 from lithobrake.study.design_sections import AIM_RESULTS, AimLimit
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.study.limit_state_checks import option_states
@@ -34,10 +34,11 @@ def aim_problems(study: Study) -> Iterator[str]:
                 yield f"aim.{key} is given without aim.grid; say there between which values there is to choose"
         return
     inputs = uncertain(study.touchdown_values())
-    if study.delivery is not None and study.delivery.is_flown:
+    is_flown = study.delivery is not None and study.delivery.is_flown
+    if is_flown and study.aim.sides:
         yield (
-            "aim.grid chooses how landers arrive at the surface, and [delivery] flies them there; leave one "
-            "of the two out"
+            "aim.sides chooses the side down at the first touchdown, and [delivery] flies landers there from states; "
+            "leave one of the two out"
         )
     if study.site.roughness_deg and "delivery.incidence_deg" in grid:
         yield (
@@ -60,12 +61,18 @@ def _value_problems(
     """Names of a grid that nothing has, and values that its runs do not reach over."""
     arrival = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
     known = tuple(f"delivery.{name.partition('.')[2]}" for name in arrival)
+    farthest: dict[str, float] = {}
+    if study.delivery is not None and study.delivery.is_flown:
+        # What is told by the flights cannot be chosen, but where these begin.
+        farthest = dict.fromkeys(OFFSETS, FAR) | dict.fromkeys(VELOCITY_OFFSETS, FAST)
+        known = tuple(f"delivery.{name}" for name in farthest)
     for option, values in grid.items():
         name = arrival_key(option)
         if option not in known:
             yield f'aim.grid."{option}" is no aim; allowed: {", ".join(known)}{closest(option, known)}'
             continue
-        lower, upper = reach(inputs[name]) if name in inputs else (-PLACES[name], PLACES[name])
+        most = farthest.get(option.partition(".")[2]) or PLACES.get(name, 0.0)
+        lower, upper = reach(inputs[name]) if name in inputs and not farthest else (-most, most)
         inside = all(lower <= value <= upper for value in values)
         if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
             yield (
