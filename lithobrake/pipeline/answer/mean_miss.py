@@ -69,6 +69,13 @@ def mean_miss(job: Job, table: JourneyTable) -> MeanMiss | None:
     latitude, longitude = _place(job.site, -east.value, -north.value)
     mean_latitude, mean_longitude = _place(job.site, east.value, north.value)
     return MeanMiss(
-        *(east, north, *on_one, latitude, longitude, mean_latitude, mean_longitude),
+        east_m=east,
+        north_m=north,
+        east_on_one_ground_m=on_one[0],
+        north_on_one_ground_m=on_one[1],
+        aim_latitude_deg=latitude,
+        aim_longitude_deg=longitude,
+        latitude_deg=mean_latitude,
+        longitude_deg=mean_longitude,
         is_distinct=any(one.bounds is not None and not one.bounds[0] <= 0.0 <= one.bounds[1] for one in (east, north)),
     )

@@ -1,7 +1,6 @@
 """Every delivery option: the landers of the study with other arrivals, followed to their ends."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,21 +10,19 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import with_side_down
 from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
 from lithobrake.pipeline.journeys.emulated_journeys import follow_emulated, most_landings
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies, on_hard_ground
 from lithobrake.pipeline.journeys.landers import StudyLanders, followed
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, why_no_emulator
-from lithobrake.smallbody.landers import ENDS
 from lithobrake.study import Study
-from lithobrake.study.delivered_states import states_of
 from lithobrake.study.delivery_sections import arrival_key
 from lithobrake.study.design_sections import SIDE
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EMULATOR_FILE
-from lithobrake.vocabulary.outcomes import FlightStatus
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, REST_NUMBERS, UNKNOWN_END, Row
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, REST_NUMBERS, Row
 
 SITE = "site."
 
@@ -61,52 +58,13 @@ def follow_options(job: Job) -> None:
     write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 
-@dataclass(frozen=True)
-class OptionArrivals:
-    """The landers of all options, one option after the other.
-
-    begin: those that touch down; place: of each among all [lander_count]; end, refit: of all, "" of those that touch
-    down.
-    """
-
-    begin: Arrivals
-    place: np.ndarray
-    end: np.ndarray
-    refit: np.ndarray
-
-
-def option_landers(design: DrawnDesign) -> OptionArrivals:
-    """The landers of all options."""
-    if design.is_flown:
-        return flown_options(design)
-    begin = option_arrivals(design)
-    count = len(begin.rows)
-    return OptionArrivals(begin, np.arange(count), np.full(count, "", dtype=object), begin.refit)
-
-
-def flown_options(design: DrawnDesign) -> OptionArrivals:
-    """Landers that are flown to the ground with the offsets of each option, the same of a release in all of them.
-
-    Of a release, landers that the study has not followed; of a file of states its rows, again where these are fewer.
-    """
-    count, parts, ends = design.study.aim.lander_count * REFIT_COUNT, [], []
-    for option in design.study.aim.aims():
-        own = DrawnDesign(_with_offsets(design.study, option))
-        first, drawn = len(design.beds), count
-        if (delivery := own.study.delivery) is not None and delivery.states is not None:
-            first, drawn = 0, min(len(states_of(own.study).time), count)
-        descents, rows, beds = own.flown_landers(first, drawn)
-        every, down = Arrivals.of_descents(descents, rows, beds, first), descents.touches_down
-        which, refit = np.arange(count) % drawn, np.arange(count) % REFIT_COUNT
-        parts.append(every.taken(which[down[which]], refit[down[which]]))
-        words = [
-            "" if lands else str(ENDS[FlightStatus(status)])
-            for lands, status in zip(down.tolist(), descents.flights.status.tolist(), strict=True)
-        ]
-        ends.append(np.array(words, dtype=object)[which])
-    end = np.concatenate(ends)
-    refits = np.tile(np.arange(count) % REFIT_COUNT, len(ends))
-    return OptionArrivals(Arrivals.joined(parts), np.flatnonzero(end == ""), end, refits)
+def option_landers(design: DrawnDesign) -> DeliveredLanders:
+    """The landers of all options, one option after the other; of a release all options have the same."""
+    if not design.is_flown:
+        return DeliveredLanders.at_surface(option_arrivals(design))
+    count = design.study.aim.lander_count * REFIT_COUNT
+    studies = [_with_offsets(design.study, option) for option in design.study.aim.aims()]
+    return DeliveredLanders.joined([DeliveredLanders.flown(DrawnDesign(study), count) for study in studies])
 
 
 def _with_offsets(study: Study, option: Mapping[str, float]) -> Study:
@@ -116,18 +74,12 @@ def _with_offsets(study: Study, option: Mapping[str, float]) -> Study:
     return study.model_copy(update={"delivery": study.delivery.model_copy(update=changed)})
 
 
-def _rows(job: Job, ground: str, options: OptionArrivals, landers: StudyLanders | None) -> list[list[Any]]:
+def _rows(job: Job, ground: str, options: DeliveredLanders, landers: StudyLanders | None) -> list[list[Any]]:
     """Rows of aim.csv; without landers nothing is known of any that touches down."""
-    count, nothing = job.study.aim.lander_count * REFIT_COUNT, [""] * (len(REST_NUMBERS) - 1)
-    ends = [end or UNKNOWN_END for end in options.end.tolist()]
-    rows = [[ground, one // count, refit, ends[one], 0.0, *nothing] for one, refit in enumerate(options.refit.tolist())]
-    if landers is not None:
-        found = zip(
-            options.place.tolist(), landers.end.tolist(), landers.rest_rows(landers.ways_from_aims), strict=True
-        )
-        for place, end, numbers in found:
-            rows[place][3:] = [end, *numbers]
-    return rows
+    count, unknown = job.study.aim.lander_count * REFIT_COUNT, [[0.0, *[""] * (len(REST_NUMBERS) - 1)]]
+    rest = unknown * len(options.place) if landers is None else landers.rest_rows(landers.ways_from_aims)
+    columns = zip(options.refit.tolist(), options.ends(landers).tolist(), options.rest_rows(rest), strict=True)
+    return [[ground, one // count, refit, end, *row] for one, (refit, end, row) in enumerate(columns)]
 
 
 def option_arrivals(design: DrawnDesign) -> Arrivals:
