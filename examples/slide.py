@@ -14,6 +14,9 @@ import matplotlib.pyplot as plt
 
 from lithobrake import open_study
 
+# Of the letters, the largest that fit into the height of the text [inch].
+SIZES, TEXT_HEIGHT = (17, 15, 13, 11), 6.6
+
 
 def main(folder: Path) -> Path:
     """Draw the slide."""
@@ -27,8 +30,10 @@ def main(folder: Path) -> Path:
     others = [one for one in study.results.answer[1:] if one not in asked]
     told = [study.results.answer[0], *(f"{one.partition('. ')[0].rstrip('.')}." for one in asked), *others]
     sentences = [re.sub(r"(?<=\d) (?=[%a-z\d])", "\u00a0", one) for one in told[: max(3, 2 + len(asked))]]
-    size = 17 if len(sentences) < 4 else 14
-    words = "\n\n".join(fill(one, 42 * 17 // size) for one in sentences)
+    for size in SIZES:
+        words = "\n\n".join(fill(one, 42 * SIZES[0] // size) for one in sentences)
+        if 1.4 * size / 72.0 * words.count("\n") < TEXT_HEIGHT:
+            break
     figure.text(0.04, 0.84, words, fontsize=size, va="top", linespacing=1.4)
     assumed = "Holds over the input ranges of the study file, and for ground that was not simulated."
     figure.text(0.04, 0.05, f"{assumed} Made with lithobrake.", fontsize=12, color="0.4")

@@ -9,14 +9,14 @@ from lithobrake.study.lander_checks import NAME
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.journey_names import FACE, FACES, JOURNEY_NUMBERS, JOURNEY_WORDS, SKY_HOURS
 from lithobrake.vocabulary.limit_state import COMPARED, Comparison, Condition, Junction, LimitState, Negation, Word
-from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.outcomes import CAPTURED, RETURNS, JourneyEnd
 from lithobrake.vocabulary.quantities import REST_NUMBERS
 
 # Cases of a condition that are looked at; one with more thresholds is taken as it is.
 MOST_CASES = 20_000
 AIM = ("latitude_deg", "longitude_deg")
 # What stands beside limit states in results, comparisons and conditions of options.
-RESERVED = (*JourneyEnd, "returns", "captured", "time_s", "distance_m", *AIM_RESULTS[1:])
+RESERVED = (*JourneyEnd, RETURNS, CAPTURED, "time_s", "distance_m", *AIM_RESULTS[1:])
 Case = Mapping[str, float | bool]
 
 
@@ -33,7 +33,7 @@ def limit_state_problems(study: Study) -> Iterator[str]:
     for name, text in study.limit_states.conditions().items():
         key = f"limit_states.{name}"
         if not re.fullmatch(NAME, name):
-            yield f"{key} is no name; allowed: letters, digits, _ and -; rename it"
+            yield f"limit_states.{name} is no name; allowed: letters, digits, _ and -; rename it"
         state = LimitState.of(text)
         if state.journey and name in RESERVED:
             yield f"{key} has a name that is one of the results; allowed: any but {', '.join(RESERVED)}; rename it"

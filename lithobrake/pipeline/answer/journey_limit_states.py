@@ -60,6 +60,12 @@ def journeys_met(study: Study, folder: StudyFolder, table: JourneyTable, state: 
     return limit_state_met(state, rest_values(table.end, {**table.numbers, **hours}, face))
 
 
+def all_met(study: Study, folder: StudyFolder, table: JourneyTable) -> dict[str, np.ndarray]:
+    """The same of every limit state of journeys of a study, by name."""
+    states = {name: LimitState.of(text) for name, text in study.limit_states.conditions().items()}
+    return {name: journeys_met(study, folder, table, one) for name, one in states.items() if one.journey}
+
+
 def _hours(folder: StudyFolder, table: JourneyTable, name: str) -> np.ndarray:
     """Hours of 24 in which each lander at rest sees a body, NaN of the others [journey_count]."""
     found = np.full(len(table.end), np.nan)

@@ -31,7 +31,7 @@ from lithobrake.pipeline.answer.journey_ends import (
     soil_shares,
     with_journeys,
 )
-from lithobrake.pipeline.answer.journey_limit_states import journeys_met
+from lithobrake.pipeline.answer.journey_limit_states import all_met
 from lithobrake.pipeline.answer.mean_miss import mean_miss
 from lithobrake.pipeline.answer.option_answers import aim_results
 from lithobrake.pipeline.answer.question_answers import limit_state_results
@@ -59,7 +59,6 @@ from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.soil import grain
 from lithobrake.touchdown.touchdown_model import stored_bed
 from lithobrake.vocabulary.file_names import RUNS_FILE, SUMMARY_FILE
-from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import (
     DRAWN_DESIGNS,
     IMPACT_SPEED,
@@ -225,12 +224,8 @@ def _of_landers(job: Job, found: Results) -> Results:
     emulated, ends = emulated_ends(job, table, plain) if study.journey.emulated_count else (None, plain)
     # A lander that is flown to the ground may miss it: the first touchdowns are of those that do not.
     journeys = runs.inputs["journey"].astype(int)
-    landed, states = table.taken(journeys), map(LimitState.of, study.limit_states.conditions().values())
-    met = {
-        name: journeys_met(study, folder, table, state)[journeys]
-        for name, state in zip(study.limit_states.conditions(), states, strict=True)
-        if state.journey
-    }
+    landed = table.taken(journeys)
+    met = {name: one[journeys] for name, one in all_met(study, folder, table).items()}
     distinct = DesignRuns.distinct([runs, *(DesignRuns.load(folder, design) for design in _side_designs(study))])
     return replace(
         found,
