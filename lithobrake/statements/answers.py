@@ -140,6 +140,10 @@ def page_warnings(data: "PageData") -> list[str]:
     return [*cautions, *of_runs, *rare_warnings(data.rare)]
 
 
+# Words of a tile with more letters name a limit state without its condition.
+LONG_TILE = 80
+
+
 @dataclass(frozen=True)
 class Tile:
     """One of the few numbers that a reader takes away; outcome: the word of the one that it is of, if it is of one."""
@@ -246,7 +250,8 @@ def _asked(name: str, one: "LimitStateResult") -> Tile:
     found = shown_probability(one)
     interval, where = labels.share_interval(found), "" if one.over_grounds is None else ", on one ground"
     ends = f" ({interval}{where})" if interval else ""
-    return Tile(labels.bare_share(found), "%", f"{met_words(name, one)}{ends}")
+    words = met_words(name, one)
+    return Tile(labels.bare_share(found), "%", f"{words if len(words) < LONG_TILE else f'meet {name}'}{ends}")
 
 
 def _region(one: "RestRegion") -> Tile:

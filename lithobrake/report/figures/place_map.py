@@ -20,11 +20,14 @@ from lithobrake.results.dispersion import RestRegion
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.number_words import percent
+from lithobrake.vocabulary.plain_text import one_line
 
 # Inches of the figure beside the answer: its width, the map, what stands left of it and below it, a row of the legend.
 WIDTH, MAP, LEFT, BELOW, ROW = 4.7, 3.95, 0.68, 0.42, 0.17
 # Of the halves of the body beside the outcomes: their height [inch].
 DISCS = 2.75
+# Letters of a condition in the legend.
+LONGEST_TEXT = 56
 
 
 @dataclass(frozen=True)
@@ -261,7 +264,7 @@ def _handles(shown: PlaceMap) -> list[Line2D]:
         named = ", ".join(name for name, lines in shown.soils.items() if lines)
         handles.append(Line2D([], [], label=f"edges of soils ({named})", **ground_map.SOIL_STYLE))
     handles += [
-        Line2D([], [], label=f"limit state {name} ({one.text})", **style)
+        Line2D([], [], label=f"limit state {name} ({one_line(one.text, LONGEST_TEXT)})", **style)
         for (name, one), style in zip(shown.areas.items(), limit_areas.area_styles(shown.areas), strict=True)
     ]
     aim = Line2D([], [], linestyle="none", label="aim point", **{**ground_map.SITE_STYLE, "markersize": 11})
