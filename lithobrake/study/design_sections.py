@@ -145,10 +145,9 @@ class LimitStatesSection(Section):
     """Conditions whose probability the study estimates, by names of your own: fast = "speed_out > 0.1 and not returns".
 
     Outputs of the first touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and
-    partner are true or false. Or, of the whole journey of a lander: near = "distance < 20 and face == +z", with distance,
-    latitude_deg, longitude_deg, time_s, tilt_deg, path_length, contacts, touchdowns, sun_hours, earth_hours,
-    orbiter_hours of the landers at rest, their face, and at_rest, escaped, partner and under_way
-    (docs/reliability.md)."""
+    partner are true or false. Or, of the whole journey, near = "distance < 20 and face == +z": distance, latitude_deg,
+    longitude_deg, time_s, tilt_deg, path_length, contacts, touchdowns, sun_hours, earth_hours and orbiter_hours of the
+    landers at rest, the face that is down, and at_rest, escaped, partner, under_way (docs/reliability.md)."""
 
     # Keys are names of the user's own: pydantic checks extra keys by the annotation of __pydantic_extra__.
     model_config = ConfigDict(extra="allow")
