@@ -37,7 +37,7 @@ def main(folder: Path) -> Path:
     figure.text(0.04, 0.84, words, fontsize=size, va="top", linespacing=1.4)
     assumed = "Holds over the input ranges of the study file, and for ground that was not simulated."
     figure.text(0.04, 0.05, f"{assumed} Made with lithobrake.", fontsize=12, color="0.4")
-    axes = figure.add_axes((0.42, 0.09, 0.56, 0.87))
+    axes = figure.add_axes((0.42, 0.08, 0.56, 0.80))
     axes.imshow(plt.imread(picture), interpolation="lanczos")
     axes.axis("off")
     path = folder.with_name(f"{folder.resolve().name}_slide.png")
