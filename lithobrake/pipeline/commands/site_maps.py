@@ -130,7 +130,7 @@ def write_site_map(site_map: SiteMap, study_text: str, place: Path) -> tuple[Pat
     write_json(numbers, json_values(site_map))
     rows = [cell.row for cell in site_map.cells]
     # A site without a result has no limit states.
-    names = list(max(rows, key=lambda row: len(row)))
+    names = list(dict.fromkeys(name for row in rows for name in row))
     write_rows(table, names, ([row.get(name) for name in names] for row in rows))
     return page, numbers, table
 
