@@ -39,7 +39,7 @@ def met_words(name: str, found: "LimitStateResult") -> str:
 def shown_probability(found: "LimitStateResult") -> "Estimate":
     """The probability with the interval that the answer has; where the ground is unknown it is that of one ground."""
     over = found.over_grounds
-    return found.probability if over is None or found.source == "emulator" else over
+    return found.probability if over is None else over
 
 
 def journey_state(name: str, found: "LimitStateResult") -> str:
@@ -48,12 +48,9 @@ def journey_state(name: str, found: "LimitStateResult") -> str:
     words = met_words(name, found) + ("" if found.radius_m is None else f" ({name})")
     where = "" if found.over_grounds is None else " over the grounds that the study allows"
     said = [f"{with_interval(one, level=one.level)} of the landers {words}{where}"]
-    if found.source == "emulator":
-        said[0] += f", from the emulator, since {found.failing_runs:.3g} journeys that meet it are too few or too many"
-    else:
-        said[0] += f", from {runs.from_}"
-        verdict = "" if found.agrees is not False else ", which does not agree"
-        said[0] += f"; the emulator gives {with_interval(found.emulator)}{verdict}" if found.emulator else ""
+    said[0] += f", from {runs.from_}"
+    verdict = "" if found.agrees is not False else ", which does not agree"
+    said[0] += f"; the emulator gives {with_interval(found.emulator)}{verdict}" if found.emulator else ""
     if one.bounds is None and found.why:
         said[0] += f"; no interval: {found.why.rstrip('.')}"
     if found.if_aimed is not None:

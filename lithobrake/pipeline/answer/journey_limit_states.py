@@ -7,7 +7,6 @@ import numpy as np
 
 from lithobrake import analysis
 from lithobrake.analysis.comparisons import difference_bounds
-from lithobrake.analysis.failure_probability import EMULATOR
 from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.files.reading import read_rows
@@ -88,15 +87,10 @@ def journey_limit_state(job: Job, name: str, state: LimitState, table: JourneyTa
             f"limit_states.{name} is {state.text!r}, which cannot be decided for any journey (journeys.csv lists how "
             "each ended, and what is known of it); choose another condition"
         )
-    fresh = _emulated(job, state)
-    drawn = None if fresh is None else analysis.drawn_counts(*fresh, REFIT_COUNT)
-    found = analysis.failure_probability(met, table.bed, drawn=drawn, why=why)
+    found = analysis.failure_probability(met, table.bed, why=why)
     by_runs = replace(found.by_runs, from_=found.by_runs.from_.replace("landing", "journey"))
-    if fresh is not None and found.by_emulator is not None:
-        by_emulator = _with_unknown(found.by_emulator, float(np.isnan(fresh[0]).mean()))
-        is_source = found.source == EMULATOR
-        probability = _with_unknown(found.probability, float(np.isnan(fresh[0]).mean())) if is_source else None
-        found = replace(found, by_emulator=by_emulator, probability=probability or found.probability)
+    # As of the fraction at rest the landings answer, and the emulator stands beside them.
+    by_emulator = None if why is not None else _by_emulator(job, state, table)
     ground, kinds = job.study.ground, _by_kind(job, met, table, why)
     is_one = ground is not None and ground.unknown != "patchy"
     return LimitStateResult(
@@ -104,14 +98,14 @@ def journey_limit_state(job: Job, name: str, state: LimitState, table: JourneyTa
         probability=found.probability,
         source=found.source,
         runs=by_runs,
-        emulator=found.by_emulator,
+        emulator=by_emulator,
         tail_limit=found.tail_limit,
         why=found.by_runs.share.why_missing,
         failing_runs=float(np.nansum(met)),
         inputs=_inputs(job, met, table),
         statement="",
         of_journey=True,
-        agrees=_agrees(by_runs.share, found.by_emulator),
+        agrees=_agrees(by_runs.share, by_emulator),
         radius_m=state.radius,
         if_aimed=_if_aimed(job, state, met, table, why),
         over_grounds=share_over_grounds(met, table.bed, why=why) if is_one else None,
@@ -119,8 +113,9 @@ def journey_limit_state(job: Job, name: str, state: LimitState, table: JourneyTa
     )
 
 
-def _emulated(job: Job, state: LimitState) -> tuple[np.ndarray, np.ndarray] | None:
-    """Which fresh landers of the emulator meet a limit state, NaN where that is not known, and their refits, [count].
+def _by_emulator(job: Job, state: LimitState, table: JourneyTable) -> Estimate | None:
+    """Share of the fresh landers of the emulator that meet a limit state, of those of known end; bounds hold whatever
+    became of the others.
 
     None where there are too few, or the emulator says nothing of what the limit state names.
     """
@@ -131,15 +126,12 @@ def _emulated(job: Job, state: LimitState) -> tuple[np.ndarray, np.ndarray] | No
     # Landers of known end of which it cannot be told: their sides, say.
     if not len(met) or np.isnan(met[~np.isin(fresh.end, UNKNOWN)]).any():
         return None
-    known = np.bincount(fresh.refit[np.isfinite(met)], minlength=REFIT_COUNT)
-    return (met, fresh.refit) if known.min() >= 2 else None
-
-
-def _with_unknown(one: Estimate, unknown: float) -> Estimate:
-    """An estimate of the landers of known end with bounds that hold whatever became of the others."""
-    if one.lower is None or one.upper is None:
-        return one
-    return replace(one, lower=(1.0 - unknown) * one.lower, upper=(1.0 - unknown) * one.upper + unknown)
+    counts, known = analysis.drawn_counts(met, fresh.refit, REFIT_COUNT)
+    if known.min() < 2:
+        return None
+    totals, fitted = np.bincount(fresh.refit, minlength=REFIT_COUNT), (len(np.unique(table.bed)), len(table.end))
+    least, most = (analysis.refit_interval(one, totals, *fitted) for one in (counts, counts + totals - known))
+    return Estimate(float(counts.sum() / known.sum()), least.lower, most.upper)
 
 
 def _if_aimed(job: Job, state: LimitState, met: np.ndarray, table: JourneyTable, why: str | None) -> Estimate | None:
