@@ -14,6 +14,9 @@ import matplotlib.pyplot as plt
 
 from lithobrake import open_study
 
+# Of the letters, the largest that fit into the height of the text [inch].
+SIZES, TEXT_HEIGHT = (17, 15, 13, 11), 6.6
+
 
 def main(folder: Path) -> Path:
     """Draw the slide."""
@@ -22,11 +25,19 @@ def main(folder: Path) -> Path:
     figure = plt.figure(figsize=(16.0, 9.0), dpi=120)
     figure.text(0.04, 0.90, study.study["title"], fontsize=30, weight="bold")
     # No line ends between a number and its unit.
-    sentences = [re.sub(r"(?<=\d) (?=[%a-z\d])", "\u00a0", one) for one in study.results.answer[:3]]
-    figure.text(0.04, 0.84, "\n\n".join(fill(one, 42) for one in sentences), fontsize=17, va="top", linespacing=1.4)
+    # The answer, then the probability of what the study asks of whole journeys, then when and where they rest.
+    asked = [one.statement for one in study.results.limit_states.values() if one.of_journey]
+    others = [one for one in study.results.answer[1:] if one not in asked]
+    told = [study.results.answer[0], *(f"{one.partition('. ')[0].rstrip('.')}." for one in asked), *others]
+    sentences = [re.sub(r"(?<=\d) (?=[%a-z\d])", "\u00a0", one) for one in told[: max(3, 2 + len(asked))]]
+    for size in SIZES:
+        words = "\n\n".join(fill(one, 42 * SIZES[0] // size) for one in sentences)
+        if 1.4 * size / 72.0 * words.count("\n") < TEXT_HEIGHT:
+            break
+    figure.text(0.04, 0.84, words, fontsize=size, va="top", linespacing=1.4)
     assumed = "Holds over the input ranges of the study file, and for ground that was not simulated."
     figure.text(0.04, 0.05, f"{assumed} Made with lithobrake.", fontsize=12, color="0.4")
-    axes = figure.add_axes((0.42, 0.09, 0.56, 0.87))
+    axes = figure.add_axes((0.42, 0.08, 0.56, 0.80))
     axes.imshow(plt.imread(picture), interpolation="lanczos")
     axes.axis("off")
     path = folder.with_name(f"{folder.resolve().name}_slide.png")

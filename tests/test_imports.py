@@ -48,8 +48,8 @@ ROOMS = {
     "dem": ("bodies", "narrow_phase", "law", "stepping", "local_stepping"),
     "pipeline": (
         *("site", "study_folder", "folder_state", "design", "job", "runs", "first_touchdown"),
-        *("expansion", "journeys", "sky_at_rest", "answer", "site_grid", "stages", "outdated_files"),
-        *("sequential_sampling", "inferred_study", "planning", "study_run", "commands"),
+        *("expansion", "journeys", "sky_at_rest", "answer", "site_arrivals", "site_grid", "stages"),
+        *("outdated_files", "sequential_sampling", "inferred_study", "planning", "study_run", "commands"),
     ),
     "statements": (
         *("estimates", "labels", "ends", "captions", "touchdowns", "journeys", "grounds", "expansion", "limits"),

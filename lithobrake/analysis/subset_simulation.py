@@ -13,7 +13,7 @@ from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import labels, numbers, random_numbers, whole_number
 from lithobrake.vocabulary.limit_state import COMPARED, Comparison, Condition, Junction, LimitState, Negation, Word
-from lithobrake.vocabulary.outcomes import TouchdownOutcome
+from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 
 Values = Mapping[str, NDArray[np.float64]]
 
@@ -40,10 +40,11 @@ class Met(NamedTuple):
 
 
 def limit_state_met(state: LimitState, values: Values) -> NDArray[np.float64]:
-    """Whether landings meet a limit state: 1, 0, or NaN where what is known does not decide, shape [count].
+    """Whether landings or journeys meet a limit state: 1, 0, or NaN where what is known does not decide, shape [count].
 
-    values: of each name that it uses and of `captured`, [count]: outputs [SI], fates 1 or 0; NaN is not known. A
-    comparison with an output of the rebound of a lander that was captured, which has none, is not met.
+    values: of each name that it uses and of `captured`, or of `at_rest` for one of journeys, [count]: numbers [SI],
+    words 1 or 0; NaN is not known. A comparison is not met with what a lander does not have: outputs of the rebound of
+    one that was captured, and numbers of the place and time of rest of one that does not come to rest.
     """
     found = _met(state.condition, values)
     return np.where(found.surely == found.maybe, found.surely.astype(float), np.nan)
@@ -78,17 +79,22 @@ def _met(condition: Condition, values: Values) -> Met:
 
 def _compared(comparison: Comparison, values: Values) -> Met:
     """Which landings meet a comparison of two sides or more."""
-    captured = values[TouchdownOutcome.CAPTURED] == 1.0
-    met, known = np.ones(len(captured), dtype=bool), np.ones(len(captured), dtype=bool)
     numbers = _numbers(comparison, values)
+    met = known = np.ones(np.broadcast_shapes(*map(np.shape, numbers)), dtype=bool)
     for side, number in zip(comparison.sides, numbers, strict=True):
         if isinstance(side, str):
             # NaN is neither above nor below anything: a captured lander meets nothing that is said of its rebound.
-            absent = captured & (side not in ALSO_OF_CAPTURED)
-            known &= np.isfinite(number) | absent
+            known = known & (np.isfinite(number) | _lacks(side, values))
     for sign, left, right in zip(comparison.signs, numbers, numbers[1:], strict=False):
-        met &= COMPARED[sign](left, right)
+        met = met & COMPARED[sign](left, right)
     return Met(known & met, ~known | met)
+
+
+def _lacks(name: str, values: Values) -> NDArray[np.bool_]:
+    """Which landers have no number of a name, [count]."""
+    if JourneyEnd.AT_REST in values:
+        return values[JourneyEnd.AT_REST] == 0.0
+    return (values[TouchdownOutcome.CAPTURED] == 1.0) & (name not in ALSO_OF_CAPTURED)
 
 
 def _distance(condition: Condition, values: Values, scale: Mapping[str, float]) -> NDArray[np.float64]:

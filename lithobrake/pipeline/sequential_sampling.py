@@ -11,6 +11,7 @@ from dataclasses import replace
 from lithobrake.analysis import half_width_of, next_run_count
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.journey_limit_states import journeys_met
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_touchdown.run_flights import RUN_FLIGHTS_FILE, RunFlights
 from lithobrake.pipeline.job import Job
@@ -30,8 +31,9 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     Of a study with more or fewer runs too: a run flies from the same sites in all of them. None at all where the file
     is not there or not whole, or was made otherwise than the study says.
     """
-    if run_answers.answers_rest(study):
-        return _at_rest(study, folder)
+    state = _asked_state(study)
+    if run_answers.answers_rest(study) or (state is not None and state.journey):
+        return _of_journeys(study, folder, state)
     key = folder.key_of(RUN_FLIGHTS_FILE)
     if key is None:
         return {}
@@ -40,13 +42,19 @@ def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     made_for = study.with_run_count(max(len(shares), 2))
     if stage_keys(made_for)[run_answers.ANSWERED_AFTER] != key:
         return {}
-    return shares if study.design.half_width_of is None else _failing_shares(study, folder)
+    return shares if state is None else _failing_shares(state, folder)
 
 
-def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
-    """1 for each journey that ended at rest and 0 for each other, by the key of its first touchdown.
+def _asked_state(study: Study) -> LimitState | None:
+    """The limit state that the half width is asked of; None for another answer."""
+    name = study.design.half_width_of
+    return None if name is None else LimitState.of(study.limit_states.conditions()[name])
 
-    Journeys without one are left out: `answers_of_design` adds them.
+
+def _of_journeys(study: Study, folder: StudyFolder, state: LimitState | None) -> dict[str, float]:
+    """1 for each journey that meets a limit state and 0 for each other, by the key of its first touchdown.
+
+    state: None for that of coming to rest. Journeys without a touchdown are left out: `answers_of_design` adds them.
     """
     key = folder.key_of(JOURNEYS_FILE)
     if key is None or folder.key_of(file_of("drawn")) is None:
@@ -54,10 +62,11 @@ def _at_rest(study: Study, folder: StudyFolder) -> dict[str, float]:
     keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)
     if stage_keys(study.with_run_count(max(len(table.end), 2)))[RUNS.name] != key:
         return {}
-    return dict(zip(keys, table.rests[table.numbers["touchdowns"] > 0.0].astype(float).tolist(), strict=True))
+    met = table.rests.astype(float) if state is None else journeys_met(study, folder, table, state)
+    return dict(zip(keys, met[table.numbers["touchdowns"] > 0.0].tolist(), strict=True))
 
 
-def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
+def _failing_shares(state: LimitState, folder: StudyFolder) -> dict[str, float]:
     """Share of its flights in which each run meets the limit state that the half width is asked of, by key."""
     if folder.key_of(file_of("drawn")) is None:
         return {}
@@ -65,7 +74,6 @@ def _failing_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
     if runs.run_count != len(fates):
         # More runs have been made since, which have not flown.
         return {}
-    state = LimitState.of(study.limit_states.conditions()[str(study.design.half_width_of)])
     return dict(zip(runs.keys, run_answers.failing_runs(state, runs, fates).tolist(), strict=True))
 
 

@@ -7,21 +7,27 @@ from dataclasses import dataclass
 import numpy as np
 
 from lithobrake.analysis import EqualAreaCells, best_choice, share_difference
+from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.files.reading import hashed_seed, read_rows
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, Refits, quantile_of_some
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.journey_limit_states import rest_values
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import OWN, follow_emulated
-from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.touchdown_emulator import GRAVITY, SLOPE, TouchdownEmulator
+from lithobrake.pipeline.site_arrivals import site_arrivals
 from lithobrake.pipeline.sky_at_rest import Days, views, where_it_stands
 from lithobrake.pipeline.study_folder import AGAIN
 from lithobrake.results.site_results import MOST_UNKNOWN, SiteAgreement, SiteCell, SiteEnds, SiteSpread
+from lithobrake.study import Study
 from lithobrake.study.design_sections import SkyBody
+from lithobrake.study.limit_state_checks import option_states
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION, REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import TOUCHDOWNS_FILE
+from lithobrake.vocabulary.journey_names import JOURNEY_WORDS
+from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED, UNKNOWN_END
@@ -29,6 +35,8 @@ from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED, UNK
 # Places of each cell that are looked at.
 PLACES = 24
 TITLE = "landers at the sites"
+# What a limit state may use of them beside how they end.
+TOLD = ("time_s", "distance")
 # Ends of the spread over the places of a cell.
 WORDS = {GRAVITY: "gravity", SLOPE: "slope", IMPACT_SPEED: "impact speed", IMPACT_INCIDENCE: "impact angle"}
 # Regions of equal area, and journeys that say something of one.
@@ -125,21 +133,18 @@ def follow_sites(job: Job, cells: EqualAreaCells, lander_count: int) -> SiteLand
     return SiteLanders(*(one.reshape(cells.total, lander_count) for one in columns))
 
 
-def site_arrivals(job: Job, cells: EqualAreaCells, lander_count: int) -> Arrivals:
-    """The landers of all cells at their first touchdowns, one cell after the other."""
-    one = Arrivals.drawn(job.design, len(job.design.rows), lander_count)
-    random = np.random.default_rng(hashed_seed(job.study.seed, "sites"))
-    places = cells.places_deg(np.broadcast_to(random.random((lander_count, 2)), (cells.total, lander_count, 2)))
-    aims = {"latitude_deg": places[..., 0].ravel(), "longitude_deg": places[..., 1].ravel()}
-    site = {key: np.tile(values, cells.total) for key, values in one.site.items()} | aims
-    number, refit = np.tile(one.number, cells.total), np.tile(np.arange(lander_count) % REFIT_COUNT, cells.total)
-    return Arrivals.of(job.site, number, one.rows * cells.total, site, refit)
-
-
 def site_cells(
-    cells: EqualAreaCells, landers: SiteLanders, ground: SiteGround, fitted: Refits, journeys: np.ndarray
+    cells: EqualAreaCells,
+    landers: SiteLanders,
+    ground: SiteGround,
+    fitted: Refits,
+    journeys: np.ndarray,
+    states: Mapping[str, LimitState],
 ) -> tuple[SiteCell, ...]:
-    """Every cell in its order; journeys: of the study with their first touchdown in each, [cell_count]."""
+    """Every cell in its order.
+
+    journeys: of the study with their first touchdown in each, [cell_count]; states: limit states that are asked of it.
+    """
     unknown = (landers.end == UNKNOWN_END).mean(axis=1)
     answered = unknown <= MOST_UNKNOWN
     best, middles, bounds = set(_not_worse(landers, answered, fitted)), cells.centres_deg, cells.bounds_deg
@@ -149,7 +154,7 @@ def site_cells(
             **dict(zip(("south_deg", "north_deg", "west_deg", "east_deg"), bounds[number].tolist(), strict=True)),
             unknown=float(unknown[number]),
             beyond=_beyond(landers.beyond[number]),
-            ends=_ends(landers, number, fitted) if answered[number] else None,
+            ends=_ends(landers, number, fitted, states) if answered[number] else None,
             not_worse=number in best,
             slope_deg=_spread(ground.slope_deg[number]),
             gravity=_spread(ground.gravity[number]),
@@ -179,14 +184,24 @@ def share_of_known(met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted
     return Estimate(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper)
 
 
-def _ends(landers: SiteLanders, cell: int, fitted: Refits) -> SiteEnds:
+def site_states(study: Study) -> dict[str, LimitState]:
+    """The limit states of a study that are asked of the landers of a site, wherever it is."""
+    return {name: one for name, one in option_states(study).items() if set(one.journey) <= {*TOLD, *JOURNEY_WORDS}}
+
+
+def _ends(landers: SiteLanders, cell: int, fitted: Refits, states: Mapping[str, LimitState]) -> SiteEnds:
     end, refit = landers.end[cell], landers.refit[cell]
     known, rests = end != UNKNOWN_END, end == JourneyEnd.AT_REST
     time, distance = (
         quantile_of_some(values[cell], rests, MEDIAN, lambda met: fitted.share(met, rests, refit))
         for values in (landers.time, landers.distance)
     )
+    values = rest_values(end.astype(str), {"time_s": landers.time[cell], "distance": landers.distance[cell]})
     return SiteEnds(
+        limit_states={
+            name: share_of_known(limit_state_met(state, values) == 1.0, known, refit, fitted)
+            for name, state in states.items()
+        },
         at_rest=share_of_known(rests, known, refit, fitted),
         partner=share_of_known(end == JourneyEnd.PARTNER, known, refit, fitted),
         escaped=share_of_known(end == JourneyEnd.ESCAPED, known, refit, fitted),

@@ -13,7 +13,7 @@ from lithobrake.report.figures.share_figures import RestSpread, draw_counts, dra
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.pages import first_touchdown, study_page
 from lithobrake.results.page_data import PageData, PageJourneys, page_results
-from lithobrake.statements.journeys import END_ROWS
+from lithobrake.statements.journeys import end_rows
 from lithobrake.statements.labels import end_words
 from lithobrake.vocabulary.plain_text import in_lines
 
@@ -94,7 +94,8 @@ class StudyPlots:
         page = self._page
         shares, rows = page.results.variance_shares, first_touchdown.RETURNS_ROW
         if page.to_rest:
-            shares, rows = {name: one for name, one in page.results.end_variance_shares.items() if one}, END_ROWS
+            shares = {name: one for name, one in page.results.end_variance_shares.items() if one}
+            rows = end_rows(page.results)
         known = [one for one in shares.values() if one]
         if not known:
             raise ValueError(f"plot.variance shows parts of a variance, which {self._study.folder} has none of")

@@ -42,6 +42,34 @@ class DeliveryResults:
 
 
 @dataclass(frozen=True)
+class MeanMiss:
+    """How far the landers at rest lie from the aim point in the mean, over the ground of a ball of the radius there.
+
+    Bounds are over beds not in the study; those on one ground, with ground.unknown = "everywhere" or "both", hold the
+    mean on one ground of those that the study allows."""
+
+    east_m: Number
+    """east of the aim point [m]"""
+    north_m: Number
+    """north of the aim point [m]"""
+    east_on_one_ground_m: Number | None
+    """the same on one ground; null where there is no such ground"""
+    north_on_one_ground_m: Number | None
+    """the same"""
+    aim_latitude_deg: float
+    """latitude at which to aim instead: as far from the aim point, the opposite way"""
+    aim_longitude_deg: float
+    """longitude of it"""
+    latitude_deg: float
+    """latitude of the mean"""
+    longitude_deg: float
+    """longitude of the mean"""
+    is_distinct: bool
+    """whether the interval of either number leaves out 0"""
+    __repr__ = short_repr
+
+
+@dataclass(frozen=True)
 class JourneyRest:
     """Places, times and attitudes of the landers at rest (journeys.csv)."""
 
@@ -61,6 +89,8 @@ class JourneyRest:
     """angle between that side's axis and the plumb line [deg]; null for a sphere"""
     why_no_regions: str | None = None
     """why there are no regions, in a sentence"""
+    miss: MeanMiss | None = None
+    """the mean of where they lie relative to the aim point; null if none rests, or they lie all around the body"""
     __repr__ = short_repr
 
 

@@ -53,6 +53,21 @@ class LimitStateResult(Inlined):
     """by input; empty if no run meets it, or if there is only one bed"""
     statement: str
     """the result in a sentence"""
+    of_journey: bool = False
+    """whether it is of the whole journey of a lander, and not of its first touchdown; then `landings` above are
+    journeys"""
+    agrees: bool | None = None
+    """of a journey: whether landings and emulator agree within their joint intervals; null without both"""
+    radius_m: float | None = None
+    """distance from the aim point within which a lander at rest meets it [m]; null for another condition"""
+    if_aimed: Share | None = None
+    """with such a distance: the probability if all places of rest moved by the mean miss (results.rest.miss), so that
+    their mean were the aim point; null where this mean cannot be distinguished from the aim point"""
+    over_grounds: Share | None = None
+    """of a journey, with ground.unknown = "everywhere" or "both": the probability over all grounds, with bounds that
+    hold that of one ground; null without"""
+    grounds: Mapping[str, Share] = field(default_factory=dict)
+    """of a journey, with [ground]: the probability on each kind of ground; empty without"""
     __repr__ = short_repr
 
 
@@ -101,7 +116,10 @@ class AimOnGround:
     allowed: bool
     """whether the option satisfies the conditions on this ground"""
     share_of_refits: float | None = None
-    """fraction of the refits in which this option has most landers at rest, on soil"""
+    """fraction of the refits in which this option is the best allowed one, on soil"""
+    limit_states: Mapping[str, Share] = field(default_factory=dict)
+    """share of the landers of known end that meet each limit state of journeys; bounds hold whatever becomes of the
+    others"""
 
 
 @dataclass(frozen=True)
@@ -117,7 +135,8 @@ class AimResult:
 
 @dataclass(frozen=True)
 class BestAim:
-    """The allowed option at which most landers are at rest; null where none is allowed, or no lander is at rest."""
+    """The allowed option at which most landers are at rest, or meet the limit state aim.best; null where none is
+    allowed, or no lander does."""
 
     aim: int
     """its index among the options, from 0"""
@@ -125,8 +144,8 @@ class BestAim:
     """fraction of the refits in which it is the best, which is not the probability that it is the best; null on hard
     ground"""
     own: Share | None
-    """its fraction of landers at rest without the selection bias, with the error over refits of all options that cannot
-    be distinguished from it; null on hard ground, and if refits give none"""
+    """its fraction of landers at rest, or that meet aim.best, without the selection bias, with the error over refits of
+    all options that cannot be distinguished from it; null on hard ground, and if refits give none"""
     not_worse: tuple[int, ...] | None
     """indices of the other allowed options that cannot be distinguished from the best at the level, all of them
     together; null in the same cases"""
@@ -160,6 +179,8 @@ class AimResults:
     best_on_hard: BestAim | None
     statement: str
     """the best option and its uncertainty, in sentences"""
+    best: str | None = None
+    """limit state that most landers meet at the best option; null: at which most are at rest"""
     sides: tuple[str, ...] = ()
     """with aim.sides: the sides in words; the values of that name are indices in this list"""
     __repr__ = short_repr

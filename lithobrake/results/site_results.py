@@ -1,7 +1,7 @@
 """The body and the site that a study lands on, its beds, and what a map of sites holds."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from lithobrake.vocabulary.estimate import Number, Share
@@ -153,6 +153,8 @@ class SiteEnds:
     """median time from the first touchdown to rest [s]; null where none rests"""
     distance_m: Number | None
     """median way over the ground from the aim point to rest [m]; null where none rests"""
+    limit_states: Mapping[str, Share] = field(default_factory=dict)
+    """landers that meet each limit state of journeys that names distance, time_s or ends alone"""
 
 
 @dataclass(frozen=True)
@@ -203,6 +205,10 @@ class SiteCell:
             found = None if self.ends is None else getattr(self.ends, name)
             numbers = (None, None, None) if found is None else (found.value, found.lower, found.upper)
             row |= dict(zip((name, f"{name}_lower", f"{name}_upper"), numbers, strict=True))
+        states = {} if self.ends is None else self.ends.limit_states
+        for name, one in states.items():
+            ends = {"": one.value, "_lower": one.lower, "_upper": one.upper}
+            row |= {f"limit_state.{name}{end}": value for end, value in ends.items()}
         row["not_worse"] = int(self.not_worse)
         for name, spread in {"slope_deg": self.slope_deg, "gravity": self.gravity, **self.light}.items():
             row |= {name: spread.mean, f"{name}_5": spread.low, f"{name}_95": spread.high}

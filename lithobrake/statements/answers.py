@@ -21,8 +21,8 @@ from lithobrake.statements.ends import (
 from lithobrake.statements.expansion import LEVEL as EXPANSION_LEVEL
 from lithobrake.statements.expansion import TellingNumbers, error_words, noise, telling_sentences
 from lithobrake.statements.grounds import by_kind, finer, one_ground, over_grounds
-from lithobrake.statements.journeys import rest_sentences, sky, soils, time_unit
-from lithobrake.statements.limits import rare_warnings
+from lithobrake.statements.journeys import mean_miss, rest_sentences, sky, soils, time_unit
+from lithobrake.statements.limits import met_words, rare_warnings, shown_probability
 from lithobrake.vocabulary.constants import CENTIMETRES
 from lithobrake.vocabulary.number_words import fixed, number, part, percent, time_limit, with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from lithobrake.results.dispersion import RestRegion
     from lithobrake.results.journey_results import RestQuantiles
     from lithobrake.results.page_data import PageData, PageExpansion, PageJourneys
+    from lithobrake.results.questions import LimitStateResult
     from lithobrake.results.run_results import CountedShare
     from lithobrake.results.summary import Results
 
@@ -40,7 +41,7 @@ def study_answer(scope: Scope, results: "Results") -> list[str]:
     return [
         *_main_answer(scope, results),
         *hard_ground_ends(results.hard_ground, scope.journey_time),
-        *(one.statement for one in results.limit_states.values()),
+        *(one.statement for one in results.limit_states.values() if not one.of_journey),
         *([results.emulated.statement] if results.emulated and results.emulated.statement else []),
         *([results.aim.statement] if results.aim else []),
         *results.site.cautions,
@@ -53,7 +54,10 @@ def _main_answer(scope: Scope, results: "Results") -> list[str]:
     if not results.ends:
         return sample_ends(scope, results) or telling_sentences(results, has_scatter=scope.has_scatter)[:1]
     if scope.to_rest and results.rest is not None:
-        ends = [*journey_ends(scope, results), *rest_sentences(results.rest)]
+        asked = [one.statement for one in results.limit_states.values() if one.of_journey]
+        asks_aim = scope.is_flown or any(one.radius_m is not None for one in results.limit_states.values())
+        aimed = [mean_miss(results.rest.miss)] if asks_aim and results.rest.miss is not None else []
+        ends = [*journey_ends(scope, results), *asked, *aimed, *rest_sentences(results.rest)]
     else:
         ends = landing_ends(scope, results)
     grounds = [*over_grounds(results.over_grounds), *by_kind(results.grounds), *finer(results.finer_ground)]
@@ -89,7 +93,12 @@ def page_answer(data: "PageData") -> str:
     results = data.results
     if data.to_rest:
         journey = data.study["journey"]
-        return f"{rest_over(results, journey['duration'], journey['touchdowns'])}."
+        within = [
+            f" {with_interval(shown_probability(one))} {met_words(name, one)}."
+            for name, one in results.limit_states.items()
+            if one.radius_m is not None
+        ]
+        return f"{rest_over(results, journey['duration'], journey['touchdowns'])}.{''.join(within)}"
     if data.journeys is None:
         return results.answer[0]
     alone = "other beds, impact points or attitudes would change it"
@@ -129,6 +138,10 @@ def page_warnings(data: "PageData") -> list[str]:
         of_runs = [f"Of the first touchdown alone: {words[:1].lower()}{words[1:]}" for words in of_runs]
         of_runs = [*([results.site.warning] if results.site.warning else []), *of_runs]
     return [*cautions, *of_runs, *rare_warnings(data.rare)]
+
+
+# Words of a tile with more letters name a limit state without its condition.
+LONG_TILE = 80
 
 
 @dataclass(frozen=True)
@@ -212,8 +225,9 @@ def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
     """When and where landers rest, and the likeliest end other than that; every other end where none does."""
     count, rest = len(journeys.table["end"]), journeys.rest
     others = {name: one for name, one in data.results.ends.items() if name != JourneyEnd.AT_REST}
+    asked = [_asked(name, one) for name, one in data.results.limit_states.items() if one.of_journey]
     if not rest.time_s.median.is_known:
-        return [_end(data, name, one, count) for name, one in others.items()]
+        return [*asked, *(_end(data, name, one, count) for name, one in others.items())]
     size, unit = time_unit(rest)
     time, distance, over = rest.time_s, rest.distance_m, data.results.over_grounds
     where = ""
@@ -223,11 +237,21 @@ def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
         where = ", on one ground"
     likeliest = max(others, key=lambda name: (others[name].share.value, others[name].share.upper or 0.0))
     return [
+        *asked,
         _quantile(time, unit, f"median time to rest{where}", size),
         _quantile(distance, "m", f"median distance from the aim point{where}"),
         _region(rest.regions[-1]) if rest.regions else _quantile(rest.contacts, "contacts", "median"),
         _end(data, likeliest, others[likeliest], count),
     ]
+
+
+def _asked(name: str, one: "LimitStateResult") -> Tile:
+    """The probability of a limit state of journeys, and where it lies on one ground."""
+    found = shown_probability(one)
+    interval, where = labels.share_interval(found), "" if one.over_grounds is None else ", on one ground"
+    ends = f" ({interval}{where})" if interval else ""
+    words = met_words(name, one)
+    return Tile(labels.bare_share(found), "%", f"{words if len(words) < LONG_TILE else f'meet {name}'}{ends}")
 
 
 def _region(one: "RestRegion") -> Tile:

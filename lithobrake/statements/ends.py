@@ -47,7 +47,8 @@ class Scope:
 
     has_soil: whether its touchdowns are simulated; one_place: whether all runs have one impact point; has_scatter:
     whether the samples of an expansion have the scatter of the runs; to_rest: whether landers are drawn and followed to
-    rest, and not for their first touchdown alone; touchdowns: for how many at most, None without a limit.
+    rest, and not for their first touchdown alone; touchdowns: for how many at most, None without a limit;
+    is_flown: whether landers fly to the ground from states.
     """
 
     has_soil: bool
@@ -59,6 +60,7 @@ class Scope:
     journey_time: float
     to_rest: bool
     touchdowns: int | None = None
+    is_flown: bool = False
 
     @property
     def where(self) -> str:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 from lithobrake.statements.labels import (
     area,
+    bracket,
     extent,
     half_width,
     partner_words,
@@ -14,6 +15,7 @@ from lithobrake.statements.labels import (
 )
 from lithobrake.statements.touchdowns import detected_parts, floor_words, variance, variance_parts
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.number_words import (
     HOUR,
     LEVEL,
@@ -28,7 +30,7 @@ from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import SKY_WORDS
 
 if TYPE_CHECKING:
-    from lithobrake.results.journey_results import EmulatedJourneys, JourneyRest, SkyResults, SoilResults
+    from lithobrake.results.journey_results import EmulatedJourneys, JourneyRest, MeanMiss, SkyResults, SoilResults
     from lithobrake.results.page_data import PageData, PageJourneys
     from lithobrake.results.run_results import CountedShare
     from lithobrake.results.summary import Results
@@ -42,6 +44,11 @@ END_SIGNS = {
 END_ROWS = {"at_rest": "at rest or not", "time_s": "time to rest", "distance_m": "distance from\nthe aim point"}
 
 
+def end_rows(results: "Results") -> dict[str, str]:
+    """The rows of the figure of what the ends vary in."""
+    return {name: END_ROWS.get(name, name) for name in results.end_variance_shares}
+
+
 def times_and_distances(rest: "JourneyRest") -> list[str]:
     """When those at rest came to rest, and how far away; nothing where none did."""
     if not (rest.time_s.median.is_known and rest.distance_m.median.is_known):
@@ -52,6 +59,31 @@ def times_and_distances(rest: "JourneyRest") -> list[str]:
         f"{quantile(rest.contacts.q95)}. Distance from the aim point: median {quantile(rest.distance_m.median)} m, "
         f"95 % within {quantile(rest.distance_m.q95)} m."
     ]
+
+
+def mean_miss(found: "MeanMiss | None") -> str:
+    """Where the landers at rest lie in the mean, and where to aim instead; empty where they have no mean."""
+    if found is None:
+        return ""
+    east, north = _way(found.east_m, "east", "west"), _way(found.north_m, "north", "south")
+    said = f"The landers at rest lie in the mean {east} and {north} of the aim point ({intervals()} in brackets)"
+    on_one = (found.east_on_one_ground_m, found.north_on_one_ground_m)
+    if on_one[0] is not None and on_one[1] is not None and None not in (on_one[0].bounds, on_one[1].bounds):
+        said += f"; on one ground {_way(on_one[0], 'east', 'west')} and {_way(on_one[1], 'north', 'south')}"
+    if not found.is_distinct:
+        return f"{said}. No shift of the aim can be distinguished from none."
+    back = f"{two_digits(abs(found.east_m.value))} m {'west' if found.east_m.value > 0.0 else 'east'}"
+    back += f" and {two_digits(abs(found.north_m.value))} m {'south' if found.north_m.value > 0.0 else 'north'}"
+    there = f"latitude {found.aim_latitude_deg:.2f} deg, longitude {found.aim_longitude_deg:.2f} deg"
+    return f"{said}. To move this mean onto the aim point, aim {back} of it, at {there}."
+
+
+def _way(one: Estimate, ahead: str, behind: str) -> str:
+    """A distance in one of two directions with its interval, "12 m east (8 to 16)"."""
+    if one.value < 0.0:
+        lower, upper = (None if end is None else -end for end in (one.upper, one.lower))
+        return _way(Estimate(-one.value, lower, upper), behind, ahead)
+    return f"{two_digits(one.value)} m {ahead}{bracket(one.lower, one.upper, two_digits)}"
 
 
 def time_words(one: Estimate) -> str:
@@ -154,6 +186,8 @@ def rest_map(results: "Results", rest: "JourneyRest") -> str:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
     if results.delivery is not None and results.delivery.regions:
         said.append("Blue: the same for the first impacts.")
+    if any(LimitState.of(one.condition).has_area for one in results.limit_states.values()):
+        said.append("Dash-dotted: where landers at rest may meet a limit state.")
     if len(results.soils) > 1:
         said.append("Dotted: boundaries of soil regions, to within a degree.")
     return " ".join(said) or "Each dot is a lander."
@@ -222,7 +256,8 @@ def attitude(rest: "JourneyRest") -> str:
 def end_variance(results: "Results") -> str:
     """The figure of what decides the ends; empty where the journeys cannot tell."""
     known = {name: one for name, one in results.end_variance_shares.items() if one}
-    said = [variance_parts(f"{END_SIGNS[name]} ({one.of})", detected_parts(one)) for name, one in known.items()]
+    signs = {name: END_SIGNS.get(name, f"whether it meets {name}") for name in known}
+    said = [variance_parts(f"{signs[name]} ({one.of})", detected_parts(one)) for name, one in known.items()]
     if said:
         said.append(
             "Delivery: position and velocity of the first impact, without attitude. Everything else includes all later "

@@ -64,6 +64,11 @@ INPUT_LABELS = {
     "delivery.latitude_deg": "latitude",
     "delivery.longitude_deg": "longitude",
     "delivery.heading_deg": "heading",
+    **{
+        f"delivery.{kind}offset_{way}": f"{words} {way}"
+        for kind, words in (("", "offset"), ("velocity_", "velocity offset"))
+        for way in ("up", "north", "east")
+    },
     "aim.sides": "side down",
     "surface.gravity": "gravity",
     "surface.slope_deg": "slope",

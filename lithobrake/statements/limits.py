@@ -18,7 +18,8 @@ from lithobrake.vocabulary.number_words import (
 )
 
 if TYPE_CHECKING:
-    from lithobrake.results.questions import AimResults, LimitStateResult, RareLimitState
+    from lithobrake.results.questions import AimOnGround, AimResults, LimitStateResult, RareLimitState
+    from lithobrake.vocabulary.estimate import Estimate
 
 # Of those at rest, the share within the distance and time that are named.
 FAR = 0.95
@@ -28,8 +29,51 @@ NAMED = 3
 FEW_ORIGINS = 3.0
 
 
+def met_words(name: str, found: "LimitStateResult") -> str:
+    """What landers do that meet a limit state of journeys."""
+    if found.radius_m is not None:
+        return f"come to rest within {number(found.radius_m)} m of the aim point"
+    return f"meet {name} ({found.condition})"
+
+
+def shown_probability(found: "LimitStateResult") -> "Estimate":
+    """The probability with the interval that the answer has; where the ground is unknown it is that of one ground."""
+    over = found.over_grounds
+    return found.probability if over is None else over
+
+
+def journey_state(name: str, found: "LimitStateResult") -> str:
+    """The probability of a limit state of journeys: by landings and emulator, by ground, and its inputs."""
+    one, runs = shown_probability(found), found.runs
+    words = met_words(name, found) + ("" if found.radius_m is None else f" ({name})")
+    where = "" if found.over_grounds is None else " over the grounds that the study allows"
+    said = [f"{with_interval(one, level=one.level)} of the landers {words}{where}"]
+    said[0] += f", from {runs.from_}"
+    verdict = "" if found.agrees is not False else ", which does not agree"
+    said[0] += f"; the emulator gives {with_interval(found.emulator)}{verdict}" if found.emulator else ""
+    if one.bounds is None and found.why:
+        said[0] += f"; no interval: {found.why.rstrip('.')}"
+    if found.if_aimed is not None:
+        said[0] += f"; with the mean on the aim point it would be {with_interval(found.if_aimed)}"
+    if runs.missing > 0.0:
+        said.append(f"{unknown_outcome(runs.missing)}, and the interval holds whatever became of them")
+    if found.grounds:
+        kinds = ", ".join(f"{kind} {with_interval(share)}" for kind, share in found.grounds.items())
+        said.append(f"By kind of ground: {kinds}")
+    made = _correlated(found)
+    return ". ".join([*said, *([f"It is correlated with {', '.join(made)}"] if made else [])]) + "."
+
+
+def _correlated(found: "LimitStateResult") -> list[str]:
+    """The significant inputs, that which differs most first."""
+    made = [key for key, one in found.inputs.items() if one.found]
+    return sorted(made, key=lambda key: -found.inputs[key].distance.value)
+
+
 def limit_state(name: str, found: "LimitStateResult") -> str:
     """The probability of a limit state: its interval, where it comes from, and correlated inputs."""
+    if found.of_journey:
+        return journey_state(name, found)
     begin = f"{name} ({found.condition}): {rare_percent(found.probability.value)} of the landings"
     one = found.probability
     if one.bounds is None:
@@ -41,8 +85,7 @@ def limit_state(name: str, found: "LimitStateResult") -> str:
             said += f"; so few beds cannot resolve probabilities below {rare_percent(found.tail_limit)}"
     else:
         said += f", from {found.runs.from_}"
-    made = [key for key, one in found.inputs.items() if one.found]
-    made.sort(key=lambda key: -found.inputs[key].distance.value)
+    made = _correlated(found)
     none = "No input is significant" if found.inputs else "Its correlated inputs are unknown"
     return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
 
@@ -95,16 +138,27 @@ def options(table: "AimResults") -> str:
     best, hard = table.best_on_soil, table.best_on_hard
     if best is None:
         return (
-            f"Of {len(aims)} delivery options {count} are allowed{within}; no lander comes to rest with any of these."
+            f"Of {len(aims)} delivery options {count} are allowed{within}; no lander {_verb(table, 'comes', 'meets')} "
+            "with any of these."
         )
     said = [] if best.not_worse is None else [_alike(table, (best.aim, *best.not_worse), count, within)]
     most = f"Of {count} delivery options{within} most landers" if not said else "Most landers"
-    said.append(f"{most} come to rest with {option(table, best.aim)}: {_of_best(table)}")
+    said.append(f"{most} {_verb(table, 'come', 'meet')} with {option(table, best.aim)}: {_of_best(table)}")
     on_hard = None if hard is None else aims[hard.aim].hard
     if hard is not None and on_hard is not None:
         where = "the same option" if best.aim == hard.aim else option(table, hard.aim)
-        said.append(f"On hard ground the best is {where}: {with_interval(on_hard.settled)}")
+        said.append(f"On hard ground the best is {where}: {with_interval(_compared(table, on_hard))}")
     return ". ".join(said) + "."
+
+
+def _verb(table: "AimResults", rests: str, meets: str) -> str:
+    """What is compared between the options: that landers come to rest, or meet a limit state."""
+    return f"{rests} to rest" if table.best is None else f"{meets} {table.best}"
+
+
+def _compared(table: "AimResults", part: "AimOnGround") -> "Estimate":
+    """The fraction of an option that is compared."""
+    return part.settled if table.best is None else part.limit_states[table.best]
 
 
 def _of_best(table: "AimResults") -> str:
@@ -113,7 +167,9 @@ def _of_best(table: "AimResults") -> str:
     assert best is not None
     part = table.aims[best.aim].soil
     # The largest of many shares is too high by its selection, so the sentence has the share without it.
-    said = with_interval(best.own or part.settled, level=table.level)
+    said = with_interval(best.own or _compared(table, part), level=table.level)
+    if table.best is not None:
+        said += f"; {with_interval(part.settled)} come to rest"
     if part.distance_p95 is not None and part.time_p95 is not None:
         far, late = part.distance_p95.value, part.time_p95.value
         said += f", {percent(FAR)} of these within {number(far)} m and {duration(late)}"
@@ -135,9 +191,14 @@ def _alike(table: "AimResults", places: Sequence[int], count: int, within: str) 
 
 def _rivals(table: "AimResults", best: int) -> str:
     """How many other options would be better if all landers of unknown outcome were at rest there."""
-    least = table.aims[best].soil.settled.value
-    count = sum(one.soil.settled.value + one.soil.missing > least for one in table.aims if one.soil.allowed) - 1
-    return f"; if all of these came to rest, up to {count} other options could be better" if count > 0 else ""
+    least = _compared(table, table.aims[best].soil).value
+    others = [one.soil for one in table.aims if one.soil.allowed]
+    count = sum(_compared(table, one).value + one.missing > least for one in others) - 1
+    return (
+        f"; if all of these {_verb(table, 'came', 'met')}, up to {count} other options could be better"
+        if count > 0
+        else ""
+    )
 
 
 def option(table: "AimResults", place: int) -> str:

@@ -7,7 +7,9 @@ from lithobrake.statements.ends import at_rest
 from lithobrake.statements.journeys import agreement
 from lithobrake.vocabulary.number_words import counted, intervals, out_of, percent, span, time_limit, with_interval
 
-NOT_COMPARED = "The emulator was not compared with landings: journey.emulated_count is 0."
+NOT_COMPARED = (
+    "The emulator was not compared with landings, as journey.emulated_count is 0 or landers are flown to the ground."
+)
 
 
 def with_words(site_map: SiteMap) -> SiteMap:

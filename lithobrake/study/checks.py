@@ -12,6 +12,7 @@ from lithobrake.study.body_checks import body_problems, rotation_problems
 from lithobrake.study.delivery_checks import journey_problems
 from lithobrake.study.design_checks import design_problems
 from lithobrake.study.ground_sections import Bell, Between, Constant, PowerLaw
+from lithobrake.study.limit_state_checks import limit_state_problems
 from lithobrake.study.quantity import reach
 from lithobrake.study.question_checks import aim_problems
 from lithobrake.study.study import Study
@@ -29,7 +30,7 @@ def problems(study: Study) -> Iterator[str]:
     yield from _arrival_problems(study)
     yield from design_problems(study)
     yield from _solver_problems(study)
-    yield from _limit_state_problems(study)
+    yield from limit_state_problems(study)
     yield from aim_problems(study)
     yield from journey_problems(study)
     yield from ground_checks.soil_problems(study)
@@ -128,13 +129,6 @@ def _distribution_problems(name: str, sizes: Constant | Between | Bell | PowerLa
             TruncatedNormal(sizes.mean, sizes.std, sizes.lower, sizes.upper)
         except ValueError as error:
             yield f"{name} is refused: {error}"
-
-
-def _limit_state_problems(study: Study) -> Iterator[str]:
-    """Names that no file or table can show."""
-    for name in study.limit_states.conditions():
-        if not re.fullmatch(lander_checks.NAME, name):
-            yield f"limit_states.{name} is no name; allowed: letters, digits, _ and -; rename it"
 
 
 def _shape_problems(study: Study) -> Iterator[str]:

@@ -86,7 +86,7 @@ def delivery_problems(study: Study) -> Iterator[str]:
         if not found:
             yield from _state_problems(study, delivery)
         return
-    for key in ("frame", "epoch"):
+    for key in ("frame", "epoch", *delivery_sections.OFFSETS, *delivery_sections.VELOCITY_OFFSETS):
         if getattr(delivery, key) is not None:
             yield (
                 f"delivery.{key} goes with states or [delivery.release], and neither is given; give one, or leave it "

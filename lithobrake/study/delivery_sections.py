@@ -15,11 +15,15 @@ FAR, FAST, LATE = (LARGEST[unit] for unit in ("m", "m/s", "s"))
 Matrix = tuple[tuple[float, ...], ...]
 SIDE = 6
 Error = Annotated[quantity.Scalar, quantity.MaybeUncertain("m")]
+Offset = Annotated[float, quantity.Number("m", at_least=-FAR, at_most=FAR)]
+VelocityOffset = Annotated[float, quantity.Number("m/s", at_least=-FAST, at_most=FAST)]
 Spin = Annotated[quantity.Scalar, quantity.MaybeUncertain("rad/s")]
 # Of its keys, those that say where the lander arrives; the others say how.
 PLACE_KEYS = ("latitude_deg", "longitude_deg", "heading_deg", "north_error", "east_error")
 # Those of a lander that is flown to the ground from a state, and of draws that go together: of no other table.
-OWN_KEYS = ("correlations", "frame", "epoch", "states", "release")
+OFFSETS = ("offset_up", "offset_north", "offset_east")
+VELOCITY_OFFSETS = tuple(f"velocity_{key}" for key in OFFSETS)
+OWN_KEYS = ("correlations", "frame", "epoch", "states", "release", *OFFSETS, *VELOCITY_OFFSETS)
 # What such a flight tells and no one gives; from the aim point no direction is then better than another.
 FLOWN = ("speed", "incidence_deg", "heading_deg", "north_error", "east_error")
 ANY_HEADING = quantity.Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
@@ -142,11 +146,30 @@ class DeliverySection(quantity.Section):
     states: str | None = Field(default=None, examples=['"states.csv"'])
     """File of states from another tool, relative to the study file, one state per journey in the order of the file: a
     table (CSV) with columns such as time_s, x_m and vx_m_s, or an ephemeris message (OEM); docs/delivery.md."""
+    offset_up: Offset | None = None
+    """Added to the position of every state or release: away from the centre of the body. What may be chosen of a
+    release; `aim.grid` compares several."""
+    offset_north: Offset | None = None
+    """The same toward north at that position."""
+    offset_east: Offset | None = None
+    """The same toward east."""
+    velocity_offset_up: VelocityOffset | None = None
+    """Added to the velocity of every state or release, in the same three directions."""
+    velocity_offset_north: VelocityOffset | None = None
+    """The same toward north."""
+    velocity_offset_east: VelocityOffset | None = None
+    """The same toward east."""
     release: ReleaseSection | None = None
 
     @property
     def is_flown(self) -> bool:
         return self.states is not None or self.release is not None
+
+    @property
+    def offsets(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """What is added to positions [m] and velocities [m/s], up, north and east."""
+        position, velocity = (tuple(getattr(self, key) or 0.0 for key in keys) for keys in (OFFSETS, VELOCITY_OFFSETS))
+        return position, velocity
 
 
 SURFACE_KEYS = tuple(key for key in DeliverySection.model_fields if key not in OWN_KEYS)

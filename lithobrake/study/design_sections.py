@@ -22,7 +22,7 @@ AT_REST = JourneyEnd.AT_REST.value
 # The side that faces the ground, among the names of what is chosen.
 SIDE = "aim.sides"
 AIM_RESULTS = (AT_REST, "missing", "distance_p95", "time_p95")
-_LIMIT = re.compile(r"\s*([a-z_0-9.]+)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
+_LIMIT = re.compile(r"\s*([\w.-]+?)\s*(<=|>=|<|>)\s*([-+.0-9eE]+)\s*")
 Latitude = Annotated[Scalar, MaybeUncertain("deg", at_least=-90, at_most=90)]
 Turn = Annotated[float, Number("deg", at_least=-360, at_most=360)]
 SkyBody = Literal["sun", "earth", "orbiter"]
@@ -144,8 +144,10 @@ def condition_text(given: object) -> str:
 class LimitStatesSection(Section):
     """Conditions whose probability the study estimates, by names of your own: fast = "speed_out > 0.1 and not returns".
 
-    Outputs of the touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and partner are
-    true or false (docs/reliability.md)."""
+    Outputs of the first touchdown [SI] are compared with numbers; returns, captured, impact, flying, escaped and
+    partner are true or false. Or, of the whole journey, near = "distance < 20 and face == +z": distance, latitude_deg,
+    longitude_deg, time_s, tilt_deg, path_length, contacts, touchdowns, sun_hours, earth_hours and orbiter_hours of the
+    landers at rest, the face that is down, and at_rest, escaped, partner, under_way (docs/reliability.md)."""
 
     # Keys are names of the user's own: pydantic checks extra keys by the annotation of __pydantic_extra__.
     model_config = ConfigDict(extra="allow")
@@ -170,8 +172,11 @@ class AimSection(Section):
     equal; for a mesh "+x" to "-z"."""
     within: list[str] = Field(default=[])
     """Conditions that the best option must satisfy, such as "incidence_deg < 45": a name of the grid without its table,
-    or at_rest, missing (fractions), distance_p95 [m], time_p95 [s]; compared with a number by
-    <, <=, > or >=."""
+    or at_rest, missing (fractions), distance_p95 [m], time_p95 [s], or a limit state of journeys (a fraction);
+    compared with a number by <, <=, > or >=."""
+    best: StrictStr | None = None
+    """Name of the limit state of journeys that most landers meet at the best option, such as distance < 20. Absent:
+    that at which most landers come to rest."""
     lander_count: Annotated[int, Whole("", at_least=2, at_most=10_000)] = 10
     """Landers of each option for each of the 50 refits of the emulator to resampled beds."""
 

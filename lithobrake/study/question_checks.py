@@ -5,13 +5,16 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from lithobrake.study.delivery_sections import arrival_key
+from lithobrake.study.delivery_sections import FAR, FAST, OFFSETS, VELOCITY_OFFSETS, arrival_key
 from lithobrake.study.design_sections import AIM_RESULTS, AimLimit
 from lithobrake.study.lander_section import directions_of_sides
+from lithobrake.study.limit_state_checks import option_states
 from lithobrake.study.quantity import Uncertain, reach, uncertain
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.clock import Epoch
+from lithobrake.vocabulary.journey_names import JOURNEY_WORDS
 from lithobrake.vocabulary.plain_text import closest, show
+from lithobrake.vocabulary.quantities import REST_NUMBERS
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
@@ -26,14 +29,16 @@ def aim_problems(study: Study) -> Iterator[str]:
     grid = study.aim.grid
     yield from _side_problems(study)
     if not study.aim.names:
-        if study.aim.within:
-            yield "aim.within is given without aim.grid; say there between which values there is to choose"
+        for key in ("within", "best"):
+            if getattr(study.aim, key):
+                yield f"aim.{key} is given without aim.grid; say there between which values there is to choose"
         return
     inputs = uncertain(study.touchdown_values())
-    if study.delivery is not None and study.delivery.is_flown:
+    is_flown = study.delivery is not None and study.delivery.is_flown
+    if is_flown and study.aim.sides:
         yield (
-            "aim.grid chooses how landers arrive at the surface, and [delivery] flies them there; leave one "
-            "of the two out"
+            "aim.sides chooses the side down at the first touchdown, and [delivery] flies landers there from states; "
+            "leave one of the two out"
         )
     if study.site.roughness_deg and "delivery.incidence_deg" in grid:
         yield (
@@ -56,12 +61,18 @@ def _value_problems(
     """Names of a grid that nothing has, and values that its runs do not reach over."""
     arrival = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
     known = tuple(f"delivery.{name.partition('.')[2]}" for name in arrival)
+    farthest: dict[str, float] = {}
+    if study.delivery is not None and study.delivery.is_flown:
+        # What is told by the flights cannot be chosen, but where these begin.
+        farthest = dict.fromkeys(OFFSETS, FAR) | dict.fromkeys(VELOCITY_OFFSETS, FAST)
+        known = tuple(f"delivery.{name}" for name in farthest)
     for option, values in grid.items():
         name = arrival_key(option)
         if option not in known:
             yield f'aim.grid."{option}" is no aim; allowed: {", ".join(known)}{closest(option, known)}'
             continue
-        lower, upper = reach(inputs[name]) if name in inputs else (-PLACES[name], PLACES[name])
+        most = farthest.get(option.partition(".")[2]) or PLACES.get(name, 0.0)
+        lower, upper = reach(inputs[name]) if name in inputs and not farthest else (-most, most)
         inside = all(lower <= value <= upper for value in values)
         if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
             yield (
@@ -85,7 +96,15 @@ def _side_problems(study: Study) -> Iterator[str]:
 def _limit_problems(study: Study) -> Iterator[str]:
     """Limits of the best aim that cannot be read, or name nothing."""
     of_grid = (name.partition(".")[2] for name in study.aim.grid)
-    names = [*of_grid, *AIM_RESULTS]
+    states = option_states(study)
+    names = [*of_grid, *AIM_RESULTS, *states]
+    if study.aim.best is not None and study.aim.best not in states:
+        known = ", ".join(states) or "none"
+        told = ", ".join((*REST_NUMBERS, *JOURNEY_WORDS))
+        yield (
+            f'aim.best is "{study.aim.best}"; allowed: a limit state of journeys that uses no other names than {told} '
+            f"(here: {known}); add it to [limit_states]"
+        )
     for text in study.aim.within:
         limit = AimLimit.of(text)
         if limit is None or limit.name not in names:

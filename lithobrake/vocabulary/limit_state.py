@@ -1,6 +1,8 @@
-"""A limit state: a condition on how a landing ends, in words of the study file, read into a tree of four kinds.
+"""A limit state: a condition on how a first touchdown or a journey ends, in words of the study file, as a tree.
 
-`lithobrake.analysis.subset_simulation` says which landings meet one.
+One that names something of a journey (JOURNEY_NUMBERS, how it ended, the side down) is of the whole journey, and so
+are then the words that a first touchdown has as well. `lithobrake.analysis.subset_simulation` says which landings or
+journeys meet one.
 """
 
 import ast
@@ -10,9 +12,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
+from lithobrake.vocabulary.journey_names import FACE, JOURNEY_NUMBERS, JOURNEY_WORDS, PLACE, face_word
 from lithobrake.vocabulary.outcomes import FATES
 from lithobrake.vocabulary.plain_text import closest
-from lithobrake.vocabulary.quantities import TOUCHDOWN
+from lithobrake.vocabulary.quantities import SIDES, TOUCHDOWN
 
 # How like a name has to be to be meant: a place, say, is no displacement.
 ALIKE = 0.6
@@ -29,12 +32,18 @@ TRUTH = {"true": True, "false": False}
 EXAMPLE = '"speed_out > 0.1 and not returns"'
 ALLOWED = (
     "outputs (SI) compared by <, <=, >, >= with numbers or each other, the words "
-    f"{', '.join(FATES)} (also == true, == false), and, or, not, brackets"
+    f"{', '.join(FATES)} (also == true, == false), and, or, not, brackets; or, of the whole journey, "
+    f"{', '.join((*JOURNEY_NUMBERS, *JOURNEY_WORDS, FACE))}"
 )
+NUMBERS = (*TOUCHDOWN, *(name for name in JOURNEY_NUMBERS if name not in TOUCHDOWN))
+WORDS = (*FATES, *(name for name in JOURNEY_WORDS if name not in FATES))
+# What makes a condition one of the whole journey, and what no such condition may name.
+OF_JOURNEY = frozenset({*JOURNEY_NUMBERS, *JOURNEY_WORDS, FACE} - {*TOUCHDOWN, *FATES})
+OF_TOUCHDOWN = frozenset({*TOUCHDOWN, *FATES} - {*JOURNEY_NUMBERS, *JOURNEY_WORDS})
 
 
 class Word(NamedTuple):
-    """One of FATES that is to be so, or not."""
+    """One of WORDS, or a side that is down as `face_word` names it, that is to be so, or not."""
 
     name: str
     is_so: bool
@@ -71,13 +80,14 @@ class NoLimitStateError(ValueError):
 class LimitState:
     """A condition such as `speed_out > 0.1 and not returns`; `of` reads one.
 
-    outputs, fates: the names that it uses, in their order.
+    outputs, fates: the names of a first touchdown that it uses, in their order; journey: those of a whole journey.
     """
 
     text: str
     condition: Condition
     outputs: tuple[str, ...]
     fates: tuple[str, ...]
+    journey: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, text: str) -> "LimitState":
@@ -85,7 +95,32 @@ class LimitState:
         tree = _parsed(text)
         condition = _condition(tree, text.strip())
         names = dict.fromkeys(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
-        return cls(text, condition, tuple(n for n in names if n in TOUCHDOWN), tuple(n for n in names if n in FATES))
+        known = [name for name in names if name in NUMBERS or name in WORDS or name == FACE]
+        own = [name for name in known if name in OF_JOURNEY]
+        if not own:
+            return cls(
+                text, condition, tuple(n for n in known if n in TOUCHDOWN), tuple(n for n in known if n in FATES)
+            )
+        if first := [name for name in known if name in OF_TOUCHDOWN]:
+            raise NoLimitStateError(
+                f"{first[0]} is of the first touchdown, and {own[0]} of the whole journey; write two limit states"
+            )
+        return cls(text, condition, (), (), tuple(known))
+
+    @property
+    def has_area(self) -> bool:
+        """Whether it depends on where a lander rests."""
+        return bool(PLACE & {*self.journey})
+
+    @property
+    def radius(self) -> float | None:
+        """The distance from the aim point [m] where it is that a lander rests within that; None for another."""
+        match self.condition:
+            case Comparison(("distance", float(radius)), ("<" | "<=",)):
+                return radius
+            case Comparison((float(radius), "distance"), (">" | ">=",)):
+                return radius
+        return None
 
 
 def _parsed(text: str) -> ast.expr:
@@ -109,13 +144,16 @@ def _condition(node: ast.expr, text: str) -> Condition:
         case ast.UnaryOp(op=ast.Not(), operand=operand):
             return Negation(_condition(operand, text))
         case ast.Compare():
-            return _word_and_truth(node) or _comparison(node, text)
+            return _word_and_truth(node) or _side_down(node) or _comparison(node, text)
         case ast.Name(id=name):
-            if name in TOUCHDOWN:
+            if name in NUMBERS:
                 raise NoLimitStateError(f"{name} is a number: compare it, as in {name} > 0.1")
-            if name not in FATES:
+            if name == FACE:
+                raise NoLimitStateError(f"{name} is the side down: compare it, as in {name} == +z")
+            if name not in WORDS:
                 raise NoLimitStateError(
-                    f"{name} is no name here{closest(name, (*FATES, *TOUCHDOWN), ALIKE)}; it describes one touchdown"
+                    f"{name} is no name here{closest(name, (*WORDS, *NUMBERS, FACE), ALIKE)}; it describes one "
+                    "touchdown, or one journey"
                 )
             return Word(name, True)
     words = ast.get_source_segment(text, node)
@@ -127,9 +165,21 @@ def _word_and_truth(node: ast.Compare) -> Word | None:
     match node:
         case ast.Compare(left=ast.Name(id=word), ops=[ast.Eq() | ast.NotEq() as op], comparators=[other]):
             said = other.id if isinstance(other, ast.Name) else str(getattr(other, "value", ""))
-            if word in FATES and said.lower() in TRUTH:
+            if word in WORDS and said.lower() in TRUTH:
                 return Word(word, TRUTH[said.lower()] == isinstance(op, ast.Eq))
     return None
+
+
+def _side_down(node: ast.Compare) -> Word | None:
+    """The word of `face == +z`, or with the side in quotation marks; None for a comparison of something else."""
+    if FACE not in {side.id for side in (node.left, *node.comparators) if isinstance(side, ast.Name)}:
+        return None
+    match node:
+        case ast.Compare(left=ast.Name(id="face"), ops=[ast.Eq() | ast.NotEq() as op], comparators=[other]):
+            side = ast.unparse(other).replace("'", "")
+            if side in SIDES:
+                return Word(face_word(side), isinstance(op, ast.Eq))
+    raise NoLimitStateError(f"{FACE} is the side down: compare it by == or != with one of {', '.join(SIDES)}")
 
 
 def _comparison(node: ast.Compare, text: str) -> Comparison:
@@ -146,11 +196,14 @@ def _comparison(node: ast.Compare, text: str) -> Comparison:
 def _side(node: ast.expr, text: str) -> str | float:
     """A side of a comparison: an output or a finite number. Raises NoLimitStateError for anything else."""
     if isinstance(node, ast.Name):
-        if node.id in FATES:
+        if node.id in WORDS:
             raise NoLimitStateError(f"{node.id} is true or false, and no number: write {node.id}, or not {node.id}")
-        if node.id not in TOUCHDOWN:
-            near = closest(node.id, TOUCHDOWN, ALIKE)
-            raise NoLimitStateError(f"{node.id} is no output{near}; of a touchdown there are {', '.join(TOUCHDOWN)}")
+        if node.id not in NUMBERS:
+            near = closest(node.id, NUMBERS, ALIKE)
+            raise NoLimitStateError(
+                f"{node.id} is no output{near}; of a touchdown there are {', '.join(TOUCHDOWN)}, and of a journey "
+                f"{', '.join(JOURNEY_NUMBERS)}"
+            )
         return node.id
     number = _number(node)
     if number is None:

@@ -207,8 +207,10 @@ JOURNEY_TOUCHDOWN = {
 # of the ground that has none.
 SOIL = {"soil": Quantity("", "region of the study file whose soil the lander meets; elsewhere: that of [grain]")}
 ELSEWHERE = "elsewhere"
+# Of landers at rest that are followed without landings: what limit states of journeys read.
+REST_NUMBERS = ("time_s", "distance", "latitude_deg", "longitude_deg", "touchdowns", "path_length")
 # Of the landers at delivery options (docs/aiming.md).
-AIM_COLUMNS = ("ground", "aim", "refit", "status", "time_s", "distance")
+AIM_COLUMNS = ("ground", "aim", "refit", "status", *REST_NUMBERS)
 # The end of a lander whose impact the emulator does not know, and for which no landing is made.
 UNKNOWN_END = "unknown"
 # Of a journey by the emulator of the touchdowns.
@@ -220,7 +222,7 @@ EMULATED = {
     "end": Quantity("", "how it ended; unknown: at an impact that the emulator does not know"),
     "beyond": Quantity("", "whether the emulator had no answer to an impact (1 or 0)"),
     "landings": Quantity("", "simulated landings that were made for it in place of an answer"),
-    "time_s": JOURNEY["time_s"],
+    **{name: JOURNEY[name] for name in REST_NUMBERS},
 }
 TOUCHDOWN_COST = {
     "wall_s": Quantity("s", "wall time of the landing"),

@@ -6,18 +6,24 @@ from contextlib import contextmanager
 import pytest
 
 from lithobrake.emulator import fitting, law, mean_law, ridge_ladder
-from lithobrake.pipeline import site_grid
-from lithobrake.pipeline.answer import emulated_ends, question_answers
+from lithobrake.pipeline import site_arrivals, site_grid
+from lithobrake.pipeline.answer import emulated_ends, journey_limit_states, option_answers, question_answers
 from lithobrake.pipeline.commands import site_maps
 from lithobrake.pipeline.expansion import expansion_samples
 from lithobrake.pipeline.first_touchdown import emulator
-from lithobrake.pipeline.journeys import delivery_options, emulated_journeys, first_arrivals, touchdown_emulator
+from lithobrake.pipeline.journeys import (
+    delivered_landers,
+    delivery_options,
+    emulated_journeys,
+    first_arrivals,
+    touchdown_emulator,
+)
 
 # Refits of an emulator, where studies have fifty.
 REFITS = 20
 WITH_REFITS = (
-    site_grid, emulated_ends, question_answers, site_maps, expansion_samples, emulator, delivery_options,
-    first_arrivals, touchdown_emulator,
+    site_grid, emulated_ends, question_answers, option_answers, journey_limit_states, site_maps, expansion_samples,
+    emulator, delivery_options, first_arrivals, touchdown_emulator, delivered_landers, site_arrivals,
 )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import lithobrake
+from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import compare_studies, infer_study, map_sites, rare_failure
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.results import StudyResults
@@ -40,9 +41,13 @@ def land(inputs: dict[str, float], seed: int) -> dict[str, Any]:
     return bouncing_lander.bounce({"journey": 1000.0, "touchdown": 0.0, **inputs}, seed)
 
 
+OF_JOURNEYS = {"near": "distance < 30", "lit": "sun_hours > 6 and face != +z"}
+
+
 def to_rest(**changes: dict[str, Any]) -> dict[str, Any]:
-    options = {"aim": {"grid": {"delivery.speed": [0.05, 0.07]}, "lander_count": 2}}
-    return bouncing_lander.journey_tables(**QUESTIONS | options | changes)
+    options = {"aim": {"grid": {"delivery.speed": [0.05, 0.07]}, "lander_count": 2, "best": "near"}}
+    states = {"limit_states": QUESTIONS["limit_states"] | OF_JOURNEYS}
+    return bouncing_lander.journey_tables(**QUESTIONS | options | states | changes)
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +63,8 @@ def test_landers_to_rest_answer_every_question_together(asked: StudyResults) -> 
     assert found.rest is not None
     assert found.rest.time_s.median.is_known
     assert 0.0 < found.returns.share.value <= 1.0
-    assert set(found.limit_states) == {"fast", "gone"}
+    assert set(found.limit_states) == {"fast", "gone", *OF_JOURNEYS}
+    _check_journeys(asked)
     assert found.limit_states["gone"].probability.bounds is not None
     assert set(found.sky) == {"sun", "earth"}
     assert set(found.soils) == {"slab", "elsewhere"}
@@ -73,6 +79,33 @@ def test_landers_to_rest_answer_every_question_together(asked: StudyResults) -> 
     assert set(found.hard_ground) >= {"hard"}
     assert len(asked.touchdowns["outcome"]) == found.touchdowns > found.journeys
     assert (asked.folder / "report" / "index.html").is_file()
+
+
+def _check_journeys(asked: StudyResults) -> None:
+    """Limit states of journeys from journeys.csv and sky.csv, at the options, and in what a reader sees first."""
+    found, table = asked.results, asked.journeys
+    near, known = found.limit_states["near"], table["end"] != "failed"
+    met = (table["end"] == "at_rest") & (table["distance"] < 30.0)
+    assert near.probability.value == pytest.approx(met[known].mean())
+    assert (near.radius_m, near.of_journey) == (30.0, True)
+    assert near.emulator is not None
+    sun = [row for row in read_rows(asked.folder / "sky.csv", ("journey", "body"), "") if row["body"] == "sun"]
+    lit = [int(row["journey"]) for row in sun if 24.0 * float(row["day_fraction"]) > 6.0]
+    seen = np.isin(np.arange(len(met)), lit) & (table["face"] != "+z") & (table["end"] == "at_rest")
+    assert found.limit_states["lit"].failing_runs == seen.sum()
+    assert found.limit_states["lit"].emulator is None
+    assert "near" in found.end_variance_shares
+    assert found.aim is not None
+    assert all(set(one.soil.limit_states) == {"near"} for one in found.aim.aims)
+    assert (
+        "Most landers meet near with " in found.aim.statement or "most landers meet near with " in found.aim.statement
+    )
+    assert near.statement in found.answer
+    page = (asked.folder / "report" / "index.html").read_text(encoding="utf-8")
+    assert "come to rest within 30&nbsp;m of the aim point." in page
+    assert found.rest is not None
+    assert found.rest.miss is not None
+    assert any(one.startswith("The landers at rest lie in the mean ") for one in found.answer)
 
 
 def test_the_expansion_of_the_first_touchdown_knows_what_its_speed_depends_on(asked: StudyResults) -> None:
@@ -108,10 +141,18 @@ def test_sites_are_mapped_and_two_studies_compared_on_regions_of_soil(asked: Stu
     assert 0.0 < site_map.at_rest.value <= 1.0
     steep = {"distribution": "uniform", "lower": 0.0, "upper": 20.0}
     # Asked for what is compared, and for nothing else.
-    slower = bouncing_lander.journey_tables(soil=SOILS, delivery=QUESTIONS["delivery"] | {"incidence_deg": steep})
+    slower = bouncing_lander.journey_tables(
+        soil=SOILS,
+        delivery=QUESTIONS["delivery"] | {"incidence_deg": steep},
+        limit_states={"near": OF_JOURNEYS["near"]},
+    )
     other = bouncing_lander.run_without_emulator(slower, tmp_path / "other", land)
     answers = compare_studies(asked.folder, other.folder).answers
-    assert {"at_rest", "time_s_median", "returns", "speed_out_median"} <= set(answers)
+    assert {"at_rest", "time_s_median", "returns", "speed_out_median", "near"} <= set(answers)
+    assert answers["near"].first.value == pytest.approx(asked.results.limit_states["near"].probability.value)
+    assert "lit" not in answers
+    # Every site has a circle of its own.
+    assert all(set(cell.ends.limit_states) == {"near"} for cell in site_map.cells if cell.ends is not None)
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ import pytest
 
 from lithobrake.analysis import half_width_of
 from lithobrake.pipeline import StudyFolder, plan_lines, study_status
+from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import answers_of, read_shares
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
@@ -21,6 +22,7 @@ from lithobrake.results import open_study
 from lithobrake.study import StudySource
 
 from .ball_studies import BALL
+from .journeys.bouncing_lander import bounce, journey_tables
 from .synthetic_lander import land
 
 
@@ -95,6 +97,22 @@ def test_a_half_width_may_be_that_of_a_limit_state(tmp_path: Path) -> None:
     assert steps[-1].endswith("asks for +- 10: that is enough")
     runs = DesignRuns.load(StudyFolder.only_read(tmp_path), "drawn")
     assert (half_width_of((np.array(runs.outcomes) == "captured").astype(float), runs.inputs["bed"]) or 1.0) <= 0.1
+
+
+def test_a_half_width_may_be_that_of_a_limit_state_of_journeys(tmp_path: Path) -> None:
+    said, error = Said(), {"distribution": "normal", "mean": 5.0, "std": 10.0}
+    tables = journey_tables(
+        limit_states={"near": "distance < 20"}, delivery={"north_error": error},
+        design={"half_width": 0.14, "half_width_of": "near"}, journey={"count": 36, "emulated_count": 0},
+    )  # fmt: skip
+    asked = StudySource.of_tables(tables, function_identity(bounce))
+    run_study(asked, tmp_path, until="fly_runs", worker_count=1, model=bounce, shown=said)
+    steps = [one for one in said.sentences if one.startswith("the probability of near is known to +- ")]
+    assert len(steps) >= 2
+    assert steps[-1].endswith("asks for +- 14: that is enough")
+    table = JourneyTable.load(StudyFolder.only_read(tmp_path))
+    near = np.where(table.end == "failed", np.nan, table.rests & (table.numbers["distance"] < 20.0))
+    assert (half_width_of(near, table.bed) or 1.0) <= 0.14
 
 
 def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns, list[str]]) -> None:

@@ -24,6 +24,7 @@ from lithobrake.vocabulary.quantities import (
     BEDS,
     FLIGHT,
     FOLLOWED,
+    JOURNEY,
     OUTPUTS,
     PERIODS_TRAVELLED,
     RUN,
@@ -112,7 +113,11 @@ def test_tables_that_are_none_are_refused_as_ever() -> None:
 REFUSED_CONDITIONS: list[tuple[str, str]] = [
     ("speed > 1", "speed is no output; did you mean speed_out?"), ("speed_out", "speed_out is a number: compare it"),
     ("returns > 1", "returns is true or false, and no number"),
-    ("retuns", "retuns is no name here; did you mean returns?"), ("distance < 60", "distance is no output; of a touch"),
+    ("retuns", "retuns is no name here; did you mean returns?"),
+    ("distanc < 60", "distanc is no output; did you mean distance?; of a touchdown there are"),
+    ("speed_out > 0.1 and distance < 60", "speed_out is of the first touchdown, and distance of the whole journey"),
+    ("face", "face is the side down: compare it, as in face == +z"), ("face < +z", "compare it by == or != with one"),
+    ("face == up", "compare it by == or != with one of +x"), ("distance", "distance is a number: compare it"),
     ("speed_out == 0.1", "outputs are compared by <, <=, >, >="), ("1 < 2", "compares numbers alone"),
     ("speed_out > 1e999", "neither an output nor a finite number"),
     ("speed_out > 1j", "neither an output nor a finite number"),
@@ -286,7 +291,7 @@ def test_every_output_has_its_unit() -> None:
 def test_every_column_of_the_tables_has_words() -> None:
     assert set(PLAIN_COLUMNS) <= set(RUN)
     own = {name for name in (*flights.COLUMNS, *AIM_COLUMNS) if not name.startswith("site_")}
-    assert own == set(FLIGHT)
+    assert own - set(JOURNEY) == set(FLIGHT) - set(JOURNEY)
     assert all(one.long_name for one in (FLIGHT | FOLLOWED | RUN | BEDS).values())
     # A name that ends with its unit has that unit.
     assert all(one.units == name.rpartition("_")[2] for name, one in FLIGHT.items() if name.endswith(("_s", "_deg")))

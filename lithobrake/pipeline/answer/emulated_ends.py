@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from lithobrake.study import Study
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome
-from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, UNKNOWN_END
+from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, REST_NUMBERS, UNKNOWN_END
 
 Shares = Mapping[str, CountedShare]
 EMULATED_ENDS = tuple(end.value for end in JourneyEnd if end != JourneyEnd.FAILED)
@@ -35,22 +35,26 @@ EMULATED_ENDS = tuple(end.value for end in JourneyEnd if end != JourneyEnd.FAILE
 
 @dataclass(frozen=True)
 class EmulatedTable:
-    """emulated.csv of one kind of landers, all arrays [lander_count]."""
+    """emulated.csv of one kind of landers, all arrays [lander_count]; numbers: of those at rest, by column."""
 
     journey: np.ndarray
     refit: np.ndarray
     end: np.ndarray
     beyond: np.ndarray
     landings: np.ndarray
+    numbers: dict[str, np.ndarray] = field(default_factory=dict)
 
     @classmethod
     def load(cls, folder: StudyFolder, landers: str) -> "EmulatedTable":
         """Those of a folder. Raises DamagedFileError for another file."""
-        rows = read_rows(folder / EMULATED_FILE, tuple(EMULATED)[:-1], AGAIN)
+        rows = read_rows(folder / EMULATED_FILE, tuple(EMULATED)[: -len(REST_NUMBERS)], AGAIN)
         own = [row for row in rows if row["landers"] == landers]
         whole = (np.array([int(row[name]) for row in own]) for name in ("journey", "refit", "beyond", "landings"))
         journey, refit, beyond, landings = whole
-        return cls(journey, refit, np.array([row["end"] for row in own], dtype=object), beyond == 1, landings)
+        end = np.array([row["end"] for row in own], dtype=object)
+        titles = {title.partition(" ")[0]: title for title in (rows[0] if rows else ())}
+        numbers = {name: np.array([float(row[titles[name]] or "nan") for row in own]) for name in REST_NUMBERS if own}
+        return cls(journey, refit, end, beyond == 1, landings, numbers)
 
     def without_landings(self, end: str) -> np.ndarray:
         """Which landers ended so by the emulator alone, [lander_count]."""

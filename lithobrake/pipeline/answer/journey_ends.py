@@ -19,11 +19,13 @@ from lithobrake.study import Study
 from lithobrake.study.lander_section import side_words, sides_down
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import JOURNEYS_FILE, SKY_FILE, TOUCHDOWNS_FILE
+from lithobrake.vocabulary.journey_names import JOURNEY_NUMBERS, SKY_HOURS
 from lithobrake.vocabulary.number_words import HIGH, LOW, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_SPEED, SIDES, SOIL
 
 Sides = dict[str, SideResults]
+NUMBERS = tuple(name for name in JOURNEY_NUMBERS if name not in SKY_HOURS)
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class JourneyTable:
         return cls(
             end=np.array([row["end"] for row in rows]),
             bed=np.array([int(row["bed"]) for row in rows]),
-            numbers={name: numbers(name) for name in ("time_s", "contacts", "distance", "tilt_deg", "touchdowns")},
+            numbers={name: numbers(name) for name in NUMBERS},
             position=np.column_stack([numbers(f"position_{axis}") for axis in "xyz"]),
             face=np.array([row["face"] for row in rows]),
         )

@@ -98,6 +98,7 @@ def scope(study: Study) -> Scope:
         journey_time=study.journey.duration,
         to_rest=asks_rest(study),
         touchdowns=study.journey.touchdowns,
+        is_flown=study.delivery is not None and study.delivery.is_flown,
     )
 
 

@@ -36,7 +36,7 @@ from lithobrake.vocabulary.outcomes import (
     FlightStatus,
     TouchdownOutcome,
 )
-from lithobrake.vocabulary.quantities import ARRIVAL, OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
+from lithobrake.vocabulary.quantities import ARRIVAL, GROUND_KIND, GROUND_SIZE, OVER_RIM, PERIODS_TRAVELLED, TOUCHDOWN
 
 if TYPE_CHECKING:
     from lithobrake.chaos import Distribution
@@ -164,10 +164,13 @@ def parts_of_variance(
     return _parts(job, runs, _touchdown_inputs(job, runs), y, of, twins)
 
 
-def parts_of_journeys(job: Job, runs: DesignRuns, table: JourneyTable) -> dict[str, run_results.VarianceParts | None]:
+def parts_of_journeys(
+    job: Job, runs: DesignRuns, table: JourneyTable, limit_states: Mapping[str, np.ndarray]
+) -> dict[str, run_results.VarianceParts | None]:
     """Parts of the variance of how and where journeys end, by their delivery and first touchdowns, runs.
 
-    table: of the journeys of these runs, in their order. Whether a lander comes to rest is 1 or 0.
+    table: of the journeys of these runs, in their order. Whether a lander comes to rest is 1 or 0, and so is whether it
+    meets each of the limit states, by name [run_count], NaN where that is not known.
     """
     rests, everything = table.rests, f"{len(table.end)} journeys"
     of_rest = journeys_at_rest(int(rests.sum()), len(rests))
@@ -176,8 +179,18 @@ def parts_of_journeys(job: Job, runs: DesignRuns, table: JourneyTable) -> dict[s
         "time_s": (table.of_rest("time_s"), of_rest),
         "distance_m": (table.of_rest("distance"), of_rest),
     }
+    numbers |= {name: (met, everything) for name, met in limit_states.items()}
     inputs = _touchdown_inputs(job, runs) | _delivery_inputs(job, runs)
     return {name: _parts(job, runs, inputs, y, of, None) for name, (y, of) in numbers.items()}
+
+
+def inputs_of_journeys(job: Job, runs: DesignRuns) -> Inputs:
+    """What is drawn for each journey, with its law and its values at the first touchdowns [run_count].
+
+    Without the ground of its bed, which is not drawn for each.
+    """
+    found = _touchdown_inputs(job, runs) | _delivery_inputs(job, runs)
+    return {name: one for name, one in found.items() if name not in (GROUND_KIND, GROUND_SIZE)}
 
 
 def _touchdown_inputs(job: Job, runs: DesignRuns) -> Inputs:

@@ -31,7 +31,10 @@ from lithobrake.pipeline.answer.journey_ends import (
     soil_shares,
     with_journeys,
 )
-from lithobrake.pipeline.answer.question_answers import aim_results, limit_state_results
+from lithobrake.pipeline.answer.journey_limit_states import all_met
+from lithobrake.pipeline.answer.mean_miss import mean_miss
+from lithobrake.pipeline.answer.option_answers import aim_results
+from lithobrake.pipeline.answer.question_answers import limit_state_results
 from lithobrake.pipeline.answer.run_answers import described, output_ranges, scope, why_no_interval
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, SPLIT, no_return_fraction, parts_of_journeys
 from lithobrake.pipeline.answer.sample_results import (
@@ -149,7 +152,7 @@ def write_summary(job: Job) -> None:
     results = replace(
         results,
         emulator=_emulator(job, results),
-        limit_states=limit_state_results(job, results.shares.outcomes),
+        limit_states=limit_state_results(job, results.shares.outcomes, results.ends),
         hard_ground=followed_results(job),
     )
     results = replace(results, answer=tuple(study_answer(over, results)))
@@ -220,20 +223,22 @@ def _of_landers(job: Job, found: Results) -> Results:
     plain = end_shares(study, table)
     emulated, ends = emulated_ends(job, table, plain) if study.journey.emulated_count else (None, plain)
     # A lander that is flown to the ground may miss it: the first touchdowns are of those that do not.
-    landed = table.taken(runs.inputs["journey"].astype(int))
+    journeys = runs.inputs["journey"].astype(int)
+    landed = table.taken(journeys)
+    met = {name: one[journeys] for name, one in all_met(study, folder, table).items()}
     distinct = DesignRuns.distinct([runs, *(DesignRuns.load(folder, design) for design in _side_designs(study))])
     return replace(
         found,
         ends=ends,
         journeys=len(table.end),
         touchdowns=table.touchdowns,
-        rest=journey_rest(study, table),
+        rest=replace(journey_rest(study, table), miss=mean_miss(job, table)),
         delivery=delivery_results(job, runs, len(table.end)),
         returns=estimates.returns,
         shares=estimates.shares,
         flights=replace(found.flights, impacts=estimates.flights),
         variance_shares=estimates.variance_shares,
-        end_variance_shares=parts_of_journeys(job, runs, landed),
+        end_variance_shares=parts_of_journeys(job, runs, landed, met),
         outputs=estimates.outputs,
         runs=estimates.runs,
         outputs_of_runs=output_ranges(distinct),

@@ -14,6 +14,7 @@ import numpy as np
 from lithobrake.analysis import PairedDifference, quantile_difference, share_difference
 from lithobrake.files.atomic import write_json
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.journey_limit_states import journeys_met
 from lithobrake.pipeline.answer.run_answers import why_no_interval
 from lithobrake.pipeline.commands.running_estimates import CAPTURED
 from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
@@ -25,6 +26,7 @@ from lithobrake.results.study_files import intact_file, json_values
 from lithobrake.statements.comparison import lines, other_beds, pairs
 from lithobrake.study import Study
 from lithobrake.vocabulary.file_names import STUDY_FILE
+from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN, counted
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import ORIENTATION, PLACE, TOUCHDOWN
@@ -206,6 +208,19 @@ def _journey_answers(
                 end.value,
                 _told(f"fraction {end.label}", "", share_difference(met[0], met[1], bed, why=why), is_fraction=True),
             )
+    states = [each.study.limit_states.conditions() for each in pair]
+    for name, text in states[0].items():
+        state = LimitState.of(text)
+        if state.journey and states[1].get(name) == text:
+            met = [
+                journeys_met(each.study, each.folder, table, state)[:count]
+                for each, table in zip(pair, tables, strict=True)
+            ]
+            if all(np.isfinite(one).any() for one in met):
+                yield (
+                    name,
+                    _told(f"fraction {name}", "", share_difference(met[0], met[1], bed, why=why), is_fraction=True),
+                )
     numbers = (
         ("time_s", "time to rest", "s", False),
         ("contacts", "contacts", "", True),

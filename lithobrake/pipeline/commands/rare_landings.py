@@ -190,6 +190,11 @@ def _limit_state(study: Study, name: str) -> LimitState:
         known = ", ".join(conditions) or "none: the study has no [limit_states]"
         raise ValueError(f"NAME is {name!r}; allowed: a name of [limit_states] ({known}); add it there")
     state = LimitState.of(conditions[name])
+    if state.journey:
+        raise ValueError(
+            f"limit_states.{name} is of whole journeys ({state.journey[0]}), and subset simulation makes first "
+            "touchdowns alone; read its probability in the summary of the study"
+        )
     words = [word for word in state.fates if word not in OF_TOUCHDOWN]
     if words or not state.outputs:
         word = (words or state.fates)[0]

@@ -49,8 +49,7 @@ def map_sites(
 
     cell_count: sites, cells of equal area; lander_count: landers of each, a multiple of the refits of the emulator, at
     least two of each; all else: as for `run_study`, which makes the journeys and their emulator first. Raises
-    ValueError for a study without an emulator of its touchdowns, one whose landers are delivered as states, and for
-    what `run_study` refuses.
+    ValueError for a study without an emulator of its touchdowns, and for what `run_study` refuses.
     """
     shown = shown or Silent()
     cells = EqualAreaCells.of(cell_count)
@@ -74,11 +73,6 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
         lacking = "journey.emulated_count" if study.design.run_count else "design.run_count"
         raise ValueError(
             f"sites asks the emulator of all touchdowns, and this study has none; set {lacking} above 0 to fit it"
-        )
-    if study.delivery is not None and study.delivery.is_flown:
-        raise ValueError(
-            "sites delivers the landers of the study elsewhere, and [delivery] flies them to the ground from states; "
-            "give the arrival conditions there instead (delivery.speed, delivery.incidence_deg)"
         )
     # Sites are compared refit by refit, so each refit has as many landers; two of one refit are the fewest that
     # scatter.
@@ -116,7 +110,7 @@ def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> Si
         # The cells are of equal area on a sphere, which here has the volume of the body.
         area_m2=4.0 * math.pi * (0.75 * shape.volume / math.pi) ** (2.0 / 3.0) / cells.total,
         at_rest=site_grid.all_at_rest(landers, fitted),
-        cells=site_grid.site_cells(cells, landers, ground, fitted, journeys),
+        cells=site_grid.site_cells(cells, landers, ground, fitted, journeys, site_grid.site_states(study)),
         agreement=site_grid.site_agreement(job),
     )
     return with_words(found)
@@ -135,7 +129,9 @@ def write_site_map(site_map: SiteMap, study_text: str, place: Path) -> tuple[Pat
     write_sites(site_map, study_text, place)
     write_json(numbers, json_values(site_map))
     rows = [cell.row for cell in site_map.cells]
-    write_rows(table, rows[0], ([row[name] for name in rows[0]] for row in rows))
+    # A site without a result has no limit states.
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    write_rows(table, names, ([row.get(name) for name in names] for row in rows))
     return page, numbers, table
 
 

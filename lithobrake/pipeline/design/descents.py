@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.delivered_states import states_of
-from lithobrake.study.delivery_sections import SIDE, ReleaseSection
+from lithobrake.study.delivery_sections import SIDE, DeliverySection, ReleaseSection
 from lithobrake.study.ground_checks import deep_contact, fast_spin
 from lithobrake.study.lander_checks import lander_radius
 from lithobrake.study.state_paths import DeliveredStates
@@ -268,10 +268,27 @@ def _into_body(study: Study, time: np.ndarray, spin_period: np.ndarray) -> np.nd
 def _states(site: Site, first: int, uniforms: np.ndarray) -> DeliveredStates:
     study, delivery = site.study, site.study.delivery
     assert delivery is not None
-    if delivery.release is None:
-        return states_of(study).rows(first, len(uniforms))
     pole = _into_body(study, np.zeros(1), np.full(1, site.medians["spin_period"]))[0, 2]
-    return released_states(delivery.release, uniforms, first, pole)
+    if delivery.release is None:
+        return with_offsets(delivery, states_of(study).rows(first, len(uniforms)), pole)
+    return with_offsets(delivery, released_states(delivery.release, uniforms, first, pole), pole)
+
+
+def with_offsets(delivery: DeliverySection, states: DeliveredStates, pole: Array) -> DeliveredStates:
+    """The states with the offsets of a delivery; pole: of the body in their axes, [3].
+
+    Directions are those at the mean position of a release, and at the position of each state of a file.
+    """
+    along, velocity = (np.array(one) for one in delivery.offsets)
+    if not (along.any() or velocity.any()):
+        return states
+    release = delivery.release
+    if release is None:
+        axes = np.stack([local_axes(position, pole) for position in states.position])
+    else:
+        axes = np.broadcast_to(local_axes(np.array(release.position), pole), (len(states.time), 3, 3))
+    moved = (np.einsum("k,nkj->nj", one, axes) for one in (along, velocity))
+    return replace(states, position=states.position + next(moved), velocity=states.velocity + next(moved))
 
 
 def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation | None, np.ndarray | None]:

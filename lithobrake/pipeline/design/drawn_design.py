@@ -189,6 +189,16 @@ class DrawnDesign:
         descents = self._descents(run, points) if self.is_flown else None
         return next(iter(self._first_touchdowns(rows, run, descents)), None)
 
+    def flown_landers(self, first: int, count: int) -> tuple[Descents, list[Row], list[int]]:
+        """Landers from the number `first` on that are flown to the ground, on the beds that the study has.
+
+        Their flights, the rows of those that reach the ground, and the beds of all.
+        """
+        beds = [bed % self.study.bed_count for bed in beds_of_runs(self.study, first + count)[first:]]
+        points = self._points(count, skip=first)
+        descents = self._descents(first, points)
+        return descents, self._first_touchdowns(self.rows_at(beds, points), first, descents), beds
+
     def rows_of(self, design: str) -> list[Row]:
         """All inputs of the runs of a design: of "drawn", or of a side design, whose row k goes with run k."""
         return {"drawn": lambda: self.rows, "soil_pairs": self._soil_pairs, "twins": self._twins}[design]()

@@ -1,5 +1,6 @@
 """Every delivery option: the landers of the study with other arrivals, followed to their ends."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import with_side_down
 from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
 from lithobrake.pipeline.journeys.emulated_journeys import follow_emulated, most_landings
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies, on_hard_ground
@@ -20,8 +22,7 @@ from lithobrake.study.design_sections import SIDE
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EMULATOR_FILE
-from lithobrake.vocabulary.outcomes import JourneyEnd
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, UNKNOWN_END, Row
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, REST_NUMBERS, Row
 
 SITE = "site."
 
@@ -32,7 +33,8 @@ def option_files(study: Study) -> list[str]:
 
 
 def option_dependencies(study: Study) -> Any:
-    return [study.aim.grid, study.aim.sides, study.aim.lander_count, hard_ground_dependencies(study)]
+    own = [study.aim.grid, study.aim.sides, study.aim.lander_count, AIM_COLUMNS]
+    return [*own, hard_ground_dependencies(study)]
 
 
 def follow_options(job: Job) -> None:
@@ -41,32 +43,43 @@ def follow_options(job: Job) -> None:
     All have the same landers: soil, bed, site and refit of each are drawn once, and only what is chosen differs. With
     [hard_ground] they are followed on hard ground too.
     """
-    begin = option_arrivals(job.design)
-    rows, emulator_file = [], job.folder.read_json(TOUCHDOWN_EMULATOR_FILE)
+    landers = option_landers(job.design)
+    begin, rows, emulator_file = landers.begin, [], job.folder.read_json(TOUCHDOWN_EMULATOR_FILE)
     if why_no_emulator(emulator_file) is None:
         emulator = TouchdownEmulator.read(job.design, job.folder)
         # At most a tenth as many landings as the journeys had touchdowns, so that the cost stays theirs.
         found = follow_emulated(job, emulator, begin, "landers at the delivery options", most_landings(job))
-        rows += _rows(job, "soil", found.landers)
+        rows += _rows(job, "soil", landers, found.landers)
     else:
-        rows += _rows(job, "soil", None)
+        rows += _rows(job, "soil", landers, None)
     if job.study.hard_ground.count:
         hard = on_hard_ground(job.design, begin, "options")
-        rows += _rows(job, "hard", followed(job, begin, hard, "landers at the delivery options, hard ground"))
+        rows += _rows(job, "hard", landers, followed(job, begin, hard, "landers at the delivery options, hard ground"))
     write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 
-def _rows(job: Job, ground: str, landers: StudyLanders | None) -> list[list[Any]]:
-    """Rows of aim.csv; without landers nothing is known of any."""
-    count = job.study.aim.lander_count * REFIT_COUNT
-    if landers is None:
-        total = count * len(job.study.aim.aims())
-        return [[ground, one // count, one % REFIT_COUNT, UNKNOWN_END, 0.0, ""] for one in range(total)]
-    columns = (landers.begin.refit, landers.end, landers.time, landers.ways_from_aims)
-    return [
-        [ground, one // count, refit, end, time, way if end == JourneyEnd.AT_REST else ""]
-        for one, (refit, end, time, way) in enumerate(zip(*(column.tolist() for column in columns), strict=True))
-    ]
+def option_landers(design: DrawnDesign) -> DeliveredLanders:
+    """The landers of all options, one option after the other; of a release all options have the same."""
+    if not design.is_flown:
+        return DeliveredLanders.at_surface(option_arrivals(design))
+    count = design.study.aim.lander_count * REFIT_COUNT
+    studies = [_with_offsets(design.study, option) for option in design.study.aim.aims()]
+    return DeliveredLanders.joined([DeliveredLanders.flown(DrawnDesign(study), count) for study in studies])
+
+
+def _with_offsets(study: Study, option: Mapping[str, float]) -> Study:
+    """The study with other offsets of its delivery."""
+    assert study.delivery is not None
+    changed = {name.partition(".")[2]: value for name, value in option.items()}
+    return study.model_copy(update={"delivery": study.delivery.model_copy(update=changed)})
+
+
+def _rows(job: Job, ground: str, options: DeliveredLanders, landers: StudyLanders | None) -> list[list[Any]]:
+    """Rows of aim.csv; without landers nothing is known of any that touches down."""
+    count, unknown = job.study.aim.lander_count * REFIT_COUNT, [[0.0, *[""] * (len(REST_NUMBERS) - 1)]]
+    rest = unknown * len(options.place) if landers is None else landers.rest_rows(landers.ways_from_aims)
+    columns = zip(options.refit.tolist(), options.ends(landers).tolist(), options.rest_rows(rest), strict=True)
+    return [[ground, one // count, refit, end, *row] for one, (refit, end, row) in enumerate(columns)]
 
 
 def option_arrivals(design: DrawnDesign) -> Arrivals:

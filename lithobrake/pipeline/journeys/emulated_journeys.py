@@ -13,6 +13,7 @@ from lithobrake.pipeline.design.lander_attitude import PREFIX
 from lithobrake.pipeline.first_touchdown.emulator import save_explorer, tables_of_refits
 from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
 from lithobrake.pipeline.journeys.emulated_touchdowns import EmulatedTouchdowns
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.ground_touchdowns import SlowArrivals, sliding
@@ -35,7 +36,7 @@ FRESH, OWN = "fresh", "own"
 COPIES = 20
 # Landings where the emulator has no answer, over all touchdowns of the journeys, at most.
 MOST_LANDINGS = 0.1
-LANDINGS_ALONE = "Landers that are delivered as states are followed by landings alone, and by no emulator."
+LANDINGS_ALONE = "Landers that are delivered by a file of states are followed by landings alone, and by no emulator."
 
 
 def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
@@ -84,13 +85,15 @@ def make_emulated(job: Job) -> None:
 def _followed(job: Job) -> list[list[Any]]:
     emulator = TouchdownEmulator.read(job.design, job.folder)
     write_explorer(job, emulator)
-    if job.design.is_flown:
+    delivery = job.study.delivery
+    if delivery is not None and delivery.states is not None:
         job.say(LANDINGS_ALONE)
         return []
     if not job.study.journey.emulated_count:
         return []
-    # Journeys that stop after some touchdowns have no end to compare with.
-    own = _own(job, emulator) if job.study.journey.touchdowns is None else []
+    # Journeys that stop after some touchdowns have no end to compare with, and what a release owes to its flights is
+    # the same for both.
+    own = _own(job, emulator) if job.study.journey.touchdowns is None and not job.design.is_flown else []
     return [*_fresh(job, emulator), *own]
 
 
@@ -103,8 +106,10 @@ def most_landings(job: Job) -> int:
 
 def _fresh(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
     # Numbers behind those of the journeys: other points of the sequence, so other landers.
-    followed = len(job.design.rows)
-    begin = Arrivals.drawn(job.design, followed, job.study.journey.emulated_count or 0)
+    count, followed = job.study.journey.emulated_count or 0, len(job.design.rows)
+    if job.design.is_flown:
+        return _rows(job, emulator, FRESH, DeliveredLanders.flown(job.design, count), most_landings(job))
+    begin = DeliveredLanders.at_surface(Arrivals.drawn(job.design, followed, count))
     return _rows(job, emulator, FRESH, begin, most_landings(job))
 
 
@@ -120,16 +125,19 @@ def _own(job: Job, emulator: TouchdownEmulator) -> Sequence[list[Any]]:
         for refit in np.resize(unseen[int(row["bed"])], COPIES).tolist()
     ]
     which, refit = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-    return _rows(job, emulator, OWN, begin.taken(which, refit), 0)
+    return _rows(job, emulator, OWN, DeliveredLanders.at_surface(begin.taken(which, refit)), 0)
 
 
-def _rows(job: Job, emulator: TouchdownEmulator, name: str, begin: Arrivals, most: int) -> list[list[Any]]:
-    found = follow_emulated(job, emulator, begin, f"{name} landers by the emulator", most)
+def _rows(job: Job, emulator: TouchdownEmulator, name: str, delivered: DeliveredLanders, most: int) -> list[list[Any]]:
+    found = follow_emulated(job, emulator, delivered.begin, f"{name} landers by the emulator", most)
     columns = (
-        *(begin.number, begin.refit, found.landers.end, (found.beyond != "").astype(int)),
-        *(found.landings, found.landers.time),
+        *(delivered.number, delivered.refit, delivered.ends(found.landers)),
+        *(delivered.of_all(one) for one in ((found.beyond != "").astype(int), found.landings)),
     )
-    return [[name, *row] for row in zip(*(one.tolist() for one in columns), strict=True)]
+    # As of the journeys, also where each lander has an aim of its own.
+    rest = delivered.rest_rows(found.landers.rest_rows(job.design.site.ways_from_aim(found.landers.position)))
+    rows = zip(*(one.tolist() for one in columns), strict=True)
+    return [[name, *row, *numbers] for row, numbers in zip(rows, rest, strict=True)]
 
 
 @dataclass(frozen=True)

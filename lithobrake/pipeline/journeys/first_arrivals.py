@@ -1,6 +1,6 @@
 """Landers at their first touchdowns: those of the study, further ones, and those that are flown to the ground."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,8 +55,8 @@ class Arrivals:
         return cls.of_rows(design.site, design.on_known_beds(first + count).rows[first:], first)
 
     @classmethod
-    def of_descents(cls, descents: Descents, rows: list[Row], beds: list[int]) -> "Arrivals":
-        """Journeys at the ends of their flights to the ground; rows: of those that touch down.
+    def of_descents(cls, descents: Descents, rows: list[Row], beds: list[int], first: int = 0) -> "Arrivals":
+        """Journeys from the number `first` on, at the ends of their flights to the ground; rows: that touch down.
 
         Of the others the rows hold the bed alone, and places are where the flights ended.
         """
@@ -65,9 +65,10 @@ class Arrivals:
             next(touching) if down else {"bed": float(bed)}
             for down, bed in zip(descents.touches_down.tolist(), beds, strict=True)
         ]
-        number = np.arange(len(beds))
+        number = np.arange(first, first + len(beds))
         # The spin period and mass are those that the flights had; the aim is that of the study.
-        site = descents.site.sampled(len(beds)) | {"mass": start.mass, "spin_period": start.spin_period}
+        site = {key: values[first:] for key, values in descents.site.sampled(first + len(beds)).items()}
+        site |= {"mass": start.mass, "spin_period": start.spin_period}
         states = (descents.position, descents.axes, descents.clock)
         return cls(number, all_rows, site, *states, number % REFIT_COUNT, descents.ground)
 
@@ -77,6 +78,17 @@ class Arrivals:
         rows = [self.rows[one] for one in which.tolist()]
         states = (self.origin[which], self.axes[which], self.clock[which])
         return Arrivals(self.number[which], rows, site, *states, refit, self.ground[which])
+
+    @classmethod
+    def joined(cls, parts: Sequence["Arrivals"]) -> "Arrivals":
+        """Landers of several sets, one set after the other."""
+        site = {key: np.concatenate([one.site[key] for one in parts]) for key in parts[0].site}
+        rows = [row for one in parts for row in one.rows]
+        number, origin, axes, clock, refit, ground = (
+            np.concatenate([getattr(one, name) for one in parts])
+            for name in ("number", "origin", "axes", "clock", "refit", "ground")
+        )
+        return cls(number, rows, site, origin, axes, clock, refit, ground)
 
     def column(self, name: str) -> np.ndarray:
         """One input of the first touchdowns [count], in the file's unit; 0 of a lander that never touches down."""

@@ -16,6 +16,7 @@ from lithobrake.smallbody.landers import Landers, follow
 from lithobrake.smallbody.touchdown import Touchdown, out_of_frame
 from lithobrake.study.delivery_sections import MOST_TOUCHDOWNS
 from lithobrake.vocabulary.array_types import Array, Integers
+from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 
 if TYPE_CHECKING:
@@ -101,6 +102,15 @@ class StudyLanders(Landers):
     def inertia(self, lander: int) -> Array:
         """Inertia of a lander as the study has it [kg m2], [3, 3]."""
         return arrivals.lander_inertia(self.design.study, self.begin.rows[lander])
+
+    def rest_rows(self, ways: Array) -> list[list[float | int | str]]:
+        """REST_NUMBERS of each lander; the place of one that does not come to rest is "".
+
+        ways: distance of each from its aim point [m], [count].
+        """
+        columns = (self.time, ways, self.latitude, self.longitude, self.touchdowns, self.path_length)
+        rows = zip((self.end == JourneyEnd.AT_REST).tolist(), *(one.tolist() for one in columns), strict=True)
+        return [row if rests else [row[0], "", "", "", *row[4:]] for rests, *row in rows]
 
 
 def followed(job: Job, begin: Arrivals, touchdown: Touchdown, title: str) -> StudyLanders:

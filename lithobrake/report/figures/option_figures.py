@@ -59,6 +59,11 @@ ROWS = (
 )
 
 
+def _state_row(name: str) -> AimRow:
+    """The probability of a limit state on soil."""
+    return AimRow(f"{name} on soil [%]", "soil", WHOLE, lambda aim: _percentages(aim.soil.limit_states[name]))
+
+
 def aim_figure(table: AimResults) -> Figure:
     """Draw results.aim: a row of maps for each number, a map for each value of the third name.
 
@@ -72,6 +77,7 @@ def aim_figure(table: AimResults) -> Figure:
     room = (_Layout.least - _Layout.left - _Layout.right) / len(panels) - 0.2
     # Journeys are followed on the soil alone.
     rows = [row for row in ROWS if row.ground == "soil" or table.aims[0].hard is not None]
+    rows[1:1] = [_state_row(name) for name in table.aims[0].soil.limit_states]
     layout = _Layout(max(room, 0.62 * len(across)), max(0.36 * len(up), 0.5), len(panels), len(rows))
     figure = Figure(figsize=layout.size)
     for number, row in enumerate(rows):

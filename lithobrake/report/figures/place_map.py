@@ -12,18 +12,22 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from lithobrake.report.figures import ground_map
+from lithobrake.report.figures import ground_map, limit_areas
 from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_local
 from lithobrake.report.figures.share_figures import ShareBar, draw_shares
 from lithobrake.report.figures.style import QUIET
 from lithobrake.results.dispersion import RestRegion
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.number_words import percent
+from lithobrake.vocabulary.plain_text import one_line
 
 # Inches of the figure beside the answer: its width, the map, what stands left of it and below it, a row of the legend.
 WIDTH, MAP, LEFT, BELOW, ROW = 4.7, 3.95, 0.68, 0.42, 0.17
 # Of the halves of the body beside the outcomes: their height [inch].
 DISCS = 2.75
+# Letters of a condition in the legend.
+LONGEST_TEXT = 56
 
 
 @dataclass(frozen=True)
@@ -56,7 +60,7 @@ class PlaceMap:
 
     The first regions are filled, of the others the edges are drawn. soils: latitude and longitude [deg] along the edges
     of regions with a soil of their own, by name. has_aim: false of the other body of a binary, whose map is about its
-    longitude 0 instead.
+    longitude 0 instead. areas: limit states of journeys that depend on the place of rest, by name.
     """
 
     places: Sequence[Places]
@@ -65,6 +69,7 @@ class PlaceMap:
     radius: float
     soils: Mapping[str, ground_map.Outlines] = field(default_factory=dict)
     has_aim: bool = True
+    areas: Mapping[str, LimitState] = field(default_factory=dict)
 
     @property
     def ground(self) -> ground_map.GroundMap:
@@ -76,6 +81,8 @@ class PlaceMap:
         lines = [np.array(line).T for one in self.regions for region in one.found for line in region.outlines]
         if not (self.regions and self.regions[0].found):
             lines += [np.array([one.latitude, one.longitude]) for one in self.places]
+        panel = ground_map.panel_around(self.ground, [(latitude, longitude) for latitude, longitude in lines])
+        lines += [] if panel is None else limit_areas.circles(self.areas.values(), self.ground, panel)
         return ground_map.panel_around(self.ground, [(latitude, longitude) for latitude, longitude in lines])
 
     @property
@@ -149,6 +156,7 @@ def draw_local(axes: Axes, shown: PlaceMap, panel: ground_map.MapPanel, norm: Lo
             ground_map.fill_regions(axes, one.found, ground, one.colour)
         ground_map.draw_edges(axes, one.found, ground, one.colour)
     ground_map.draw_soils(axes, shown.soils, ground)
+    limit_areas.draw_areas(axes, shown.areas, shown.aim, ground, panel)
     for places in shown.places:
         _draw_places(axes, places, ground, panel, norm)
         outside += _outside(places, ground, panel)
@@ -216,6 +224,7 @@ def _draw_half(axes: Axes, shown: PlaceMap, ground: ground_map.GroundMap, norm: 
     for one in shown.regions:
         ground_map.draw_edges(axes, one.found, ground, one.colour)
     ground_map.draw_soils(axes, shown.soils, ground)
+    limit_areas.draw_areas(axes, shown.areas, shown.aim, ground, None)
     for places in shown.places:
         _draw_places(axes, places, ground, None, norm)
     for line in axes.lines:
@@ -254,6 +263,10 @@ def _handles(shown: PlaceMap) -> list[Line2D]:
     if any(shown.soils.values()):
         named = ", ".join(name for name, lines in shown.soils.items() if lines)
         handles.append(Line2D([], [], label=f"edges of soils ({named})", **ground_map.SOIL_STYLE))
+    handles += [
+        Line2D([], [], label=f"limit state {name} ({one_line(one.text, LONGEST_TEXT)})", **style)
+        for (name, one), style in zip(shown.areas.items(), limit_areas.area_styles(shown.areas), strict=True)
+    ]
     aim = Line2D([], [], linestyle="none", label="aim point", **{**ground_map.SITE_STYLE, "markersize": 11})
     return [*handles, aim] if shown.has_aim else handles
 

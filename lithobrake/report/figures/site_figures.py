@@ -47,6 +47,8 @@ def sheets(site_map: SiteMap) -> list[SiteSheet]:
     if site_map.why is None:
         least = _of_ends(lambda ends: 100.0 * (ends.at_rest.lower or 0.0))
         found += [SiteSheet(f"at rest, at least ({at_level(site_map.level)}) [%]", least, GOOD, whole)]
+    states = next((tuple(site.ends.limit_states) for site in site_map.cells if site.ends is not None), ())
+    found += [SiteSheet(f"limit state {name} [%]", _of_state(name), GOOD, (0.0, 100.0)) for name in states]
     found += [
         SiteSheet("median time to rest [h]", _median("time_s", HOUR), BAD),
         SiteSheet("median distance from the aim point [m]", _median("distance_m", 1.0), BAD),
@@ -62,6 +64,10 @@ def sheets(site_map: SiteMap) -> list[SiteSheet]:
 
 def _of_ends(read: Callable[[SiteEnds], float]) -> Callable[[SiteCell], float]:
     return lambda site: math.nan if site.ends is None else read(site.ends)
+
+
+def _of_state(name: str) -> Callable[[SiteCell], float]:
+    return _of_ends(lambda ends: 100.0 * ends.limit_states[name].value)
 
 
 def _median(name: str, unit: float) -> Callable[[SiteCell], float]:

@@ -42,6 +42,7 @@ from lithobrake.statements import journeys as words
 from lithobrake.statements.answers import page_answer, page_details, page_tiles, page_warnings
 from lithobrake.statements.labels import GROUND_WORDS, end_words, partner_words
 from lithobrake.statements.limits import options_caption, rare_caption
+from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.outcomes import END_COLOURS, FATE_COLOURS, FlightStatus, JourneyEnd
 
@@ -120,7 +121,7 @@ def _to_rest(data: PageData, journeys: PageJourneys) -> list[PageSection]:
         caption = grounds.curve_caption()
         why = [Plot("grounds", "The answer against the size of the grains", caption, lambda: _draw_sizes(data)), *why]
     return [
-        PageSection("Where", where),
+        PageSection("Where", where, said=[miss] if (miss := words.mean_miss(rest.miss)) else []),
         PageSection("When", when, [journey_tables.rest_table(journeys)]),
         PageSection(
             "Why", why, [journey_tables.grounds_table(data, journeys), journey_tables.sides_table(data, journeys)]
@@ -176,7 +177,9 @@ def end_map(data: PageData, journeys: PageJourneys) -> PlaceMap:
     names, table = end_words(data.results.site), journeys.elsewhere
     places = places_by_end(names, END_COLOURS, table["end"], table["latitude_deg"], table["longitude_deg"])
     soils = {name: one.outlines for name, one in data.results.soils.items()}
-    return PlaceMap(places, regions, *aim_point(data), soils)
+    states = {name: LimitState.of(one.condition) for name, one in data.results.limit_states.items() if one.of_journey}
+    areas = {name: one for name, one in states.items() if one.has_area}
+    return PlaceMap(places, regions, *aim_point(data), soils, areas=areas)
 
 
 def _draw_partner(data: PageData, journeys: PageJourneys) -> "Figure":
@@ -195,7 +198,7 @@ def end_shares(data: PageData) -> list[ShareBar]:
 
 def _draw_ends(data: PageData) -> "Figure":
     known = {name: one for name, one in data.results.end_variance_shares.items() if one}
-    return variance_figure(known, words.END_ROWS, LEVEL)
+    return variance_figure(known, words.end_rows(data.results), LEVEL)
 
 
 def time_spread(journeys: PageJourneys) -> RestSpread:

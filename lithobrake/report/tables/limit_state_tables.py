@@ -9,7 +9,7 @@ from lithobrake.results.page_data import PageData
 from lithobrake.results.questions import LimitStateResult, RareLimitState
 from lithobrake.statements import notes
 from lithobrake.statements.labels import bracket, input_words
-from lithobrake.vocabulary.number_words import at_level, fixed, number, percent
+from lithobrake.vocabulary.number_words import at_level, fixed, number, percent, with_interval
 
 SOURCES = {"runs": "runs", "emulator": "emulator, since too few runs meet it"}
 RareResults = Mapping[str, RareLimitState]
@@ -24,6 +24,11 @@ def limit_state_tables(data: PageData) -> list[PageTable]:
 def _probabilities(states: Mapping[str, LimitStateResult]) -> PageTable:
     interval = f"{at_level(next(iter(states.values())).probability.level)} [%]"
     columns = ["limit state", "condition", "probability [%]", interval, "source", "runs that meet it"]
+    shown = {
+        "by the emulator": {name: one.emulator for name, one in states.items() if one.emulator is not None},
+        "on one ground": {name: one.over_grounds for name, one in states.items() if one.over_grounds is not None},
+    }
+    shown = {words: found for words, found in shown.items() if found}
     rows = [
         [
             name,
@@ -35,11 +40,12 @@ def _probabilities(states: Mapping[str, LimitStateResult]) -> PageTable:
             or "none",
             SOURCES[state.source],
             number(state.failing_runs),
+            *(with_interval(found[name]) if name in found else "" for found in shown.values()),
         ]
         for name, state in states.items()
     ]
     note = notes.limit_states(states)
-    return PageTable("Limit states", columns, rows, note, frozenset((*columns[2:4], columns[5])))
+    return PageTable("Limit states", [*columns, *shown], rows, note, frozenset((*columns[2:4], columns[5], *shown)))
 
 
 def _inputs(states: Mapping[str, LimitStateResult]) -> list[PageTable]:

@@ -105,4 +105,4 @@ def test_an_output_that_no_run_has_is_refused(results: StudyResults) -> None:
     study = check_tables(synthetic_tables(limit_states={"hard": "peak_acceleration > 50"}), Path())
     job: Any = SimpleNamespace(study=study, folder=StudyFolder.only_read(results.folder), site=Site(study))
     with pytest.raises(ValueError, match=r"limit_states\.hard uses peak_acceleration, which no run has"):
-        limit_state_results(job, {})
+        limit_state_results(job, {}, {})

@@ -166,12 +166,14 @@ def test_a_distance_that_follows_the_delivery_is_the_deliverys(journeys: StudyRe
     random = np.random.default_rng(0)
     numbers = {**table.numbers, "distance": speed / speed.std() + 0.2 * random.standard_normal(len(speed))}
     all_rest = JourneyTable(np.full(len(speed), "at_rest"), table.bed, numbers, table.position, table.face)
-    found = parts_of_journeys(job, runs, all_rest)
+    found = parts_of_journeys(job, runs, all_rest, {"fast": (speed > np.median(speed)).astype(float)})
     assert found["at_rest"] is None
     parts = found["distance_m"]
     assert parts.arrival.value > 0.85
     assert parts.soil.value < 0.1
     assert parts.of == f"{len(speed)} of {len(speed)} journeys that ended at rest"
+    # A limit state that the speed of delivery decides is the delivery's, too, as far as terms of low degree follow it.
+    assert found["fast"].parts["arrival"].value > 0.5
 
 
 TABLES = ("journeys.csv", "touchdowns.csv", "arcs.csv")

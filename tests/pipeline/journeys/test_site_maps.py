@@ -103,7 +103,7 @@ def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     landers = SiteLanders(end, time, 0.1 * time, refit, beyond)
     ground = SiteGround(np.tile(np.linspace(0.0, 24.0, 24), (4, 1)), np.full((4, 24), 5e-5), {})
     fitted = Refits(bed_count=12, run_count=100, why=None)
-    first, second, third, last = site_cells(cells, landers, ground, fitted, np.array([0, 3, 0, 1]))
+    first, second, third, last = site_cells(cells, landers, ground, fitted, np.array([0, 3, 0, 1]), {})
     assert (first.ends, first.beyond, first.unknown) == (None, "gravity, impact speed", 0.11)
     assert (second.ends.at_rest.value, second.beyond, second.journeys) == (1.0, "slope", 3)
     assert second.ends.at_rest.lower < 0.9 < (second.ends.at_rest.upper or 0.0)
@@ -246,8 +246,6 @@ def test_counts_that_make_no_map_are_refused(words: list[str], message: str, tmp
 def test_studies_that_deliver_nothing_elsewhere_are_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"this study has none; set journey.emulated_count above 0"):
         map_sites(StudySource.read(Path("scenarios/first_bounce.toml")), tmp_path)
-    with pytest.raises(ValueError, match=r"\[delivery\] flies them to the ground from states"):
-        map_sites(StudySource.read(Path("scenarios/release.toml")), tmp_path)
 
 
 def test_a_map_that_is_there_is_not_replaced(tmp_path: Path) -> None:

@@ -1,0 +1,42 @@
+"""The mean of an output over the grounds that a study allows, with the interval of that on one of them."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lithobrake.analysis import confidence
+from lithobrake.analysis.ground_spread import FEW
+from lithobrake.analysis.output_estimates import mean_estimate
+from lithobrake.analysis.share_estimate import BED_VARIANCE_CONFIDENCE, ONE_BED, standard_error
+from lithobrake.vocabulary.estimate import Estimate
+
+
+def mean_over_beds(y: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> Estimate:
+    """`mean_estimate`, without an interval where there is a reason `why`, and on one bed; NaN where no run has y."""
+    values, beds = confidence.answered_runs(y, bed)
+    if not len(values):
+        return Estimate(math.nan, None, None, why_missing=why)
+    if why is not None or len(np.unique(beds)) < 2:
+        return Estimate(float(values.mean()), None, None, why_missing=why or ONE_BED)
+    return mean_estimate(y, bed)
+
+
+def mean_over_grounds(y: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> Estimate:
+    """The mean of an output y [run_count], NaN where a run has none, with the interval of its mean on one ground.
+
+    bed: the ground of each run [run_count]. why: a reason why these runs give no interval. The output is taken as the
+    sum of what the ground and what all else adds, each with one variance; that of grounds stands at an upper limit, as
+    in share_estimate. Source: [Searle-1992], section 3.6 (components of variance).
+    """
+    mean = mean_over_beds(y, bed, why=why)
+    if mean.lower is None or mean.upper is None:
+        return mean
+    values, beds = confidence.answered_runs(y, bed)
+    if len(values) - len(np.unique(beds)) < 1:
+        return Estimate(mean.value, None, None, why_missing=FEW)
+    components = confidence.bed_components(values, beds)
+    variance = components.variance_at(BED_VARIANCE_CONFIDENCE) + standard_error(values, beds) ** 2
+    half = confidence.normal_quantile() * math.sqrt(variance)
+    # The mean of one ground is known no better than that over all.
+    return Estimate(mean.value, min(mean.value - half, mean.lower), max(mean.value + half, mean.upper))

@@ -1,0 +1,81 @@
+"""How far the landers at rest lie from the aim point in the mean, and where the aim should be moved."""
+
+import math
+
+import numpy as np
+
+from lithobrake.analysis.mean_over_grounds import mean_over_beds, mean_over_grounds
+from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.site import Site
+from lithobrake.results.journey_results import MeanMiss
+from lithobrake.vocabulary.number_words import HIGH
+
+# Beyond this angle from the aim point [rad] a direction over the ground says little of where a place is.
+FARTHEST = 0.5 * math.pi
+
+
+def offsets(site: Site, latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> np.ndarray:
+    """Metres east and north of the aim point, [count, 2], of places by latitude and longitude [deg], [count].
+
+    As far and in the direction in which the way over a ball of the radius at the aim point begins (azimuthal
+    equidistant). Source: [Snyder-1987], chapter 25.
+    """
+    middle, latitude = math.radians(site.aim[0]), np.radians(latitude_deg)
+    turn = np.radians(longitude_deg - site.aim[1])
+    east = np.cos(latitude) * np.sin(turn)
+    north = math.cos(middle) * np.sin(latitude) - math.sin(middle) * np.cos(latitude) * np.cos(turn)
+    facing = math.sin(middle) * np.sin(latitude) + math.cos(middle) * np.cos(latitude) * np.cos(turn)
+    level = np.hypot(east, north)
+    way = site.aim_radius * np.arctan2(level, facing)
+    return np.column_stack([east, north]) * (way / np.maximum(level, 1e-300))[:, None]
+
+
+def _place(site: Site, east: float, north: float) -> tuple[float, float]:
+    """Latitude and longitude [deg] of a place so far east and north of the aim point [m]."""
+    angle, heading = math.hypot(east, north) / site.aim_radius, math.atan2(east, north)
+    middle = math.radians(site.aim[0])
+    height = math.sin(middle) * math.cos(angle) + math.cos(middle) * math.sin(angle) * math.cos(heading)
+    turn = math.atan2(
+        math.sin(heading) * math.sin(angle) * math.cos(middle), math.cos(angle) - math.sin(middle) * height
+    )
+    longitude = (site.aim[1] + math.degrees(turn) + 180.0) % 360.0 - 180.0
+    return math.degrees(math.asin(max(min(height, 1.0), -1.0))), longitude
+
+
+def rest_offsets(job: Job, table: JourneyTable) -> np.ndarray | None:
+    """Metres east and north of the aim point of each lander at rest, NaN of the others, [journey_count, 2].
+
+    None where no lander rests, or more than a twentieth lie beyond a quarter of the way around the body.
+    """
+    if not table.rests.any():
+        return None
+    if np.quantile(table.numbers["distance"][table.rests], HIGH) > FARTHEST * job.site.aim_radius:
+        return None
+    found = offsets(job.site, table.numbers["latitude_deg"], table.numbers["longitude_deg"])
+    return np.where(table.rests[:, None], found, np.nan)
+
+
+def mean_miss(job: Job, table: JourneyTable) -> MeanMiss | None:
+    """The mean of where the landers at rest lie; None where there is none, as `rest_offsets` says."""
+    places = rest_offsets(job, table)
+    if places is None:
+        return None
+    why, ground = why_no_interval(job.study), job.study.ground
+    east, north = (mean_over_beds(one, table.bed, why=why) for one in places.T)
+    is_one = ground is not None and ground.unknown != "patchy"
+    on_one = [mean_over_grounds(one, table.bed, why=why) if is_one else None for one in places.T]
+    latitude, longitude = _place(job.site, -east.value, -north.value)
+    mean_latitude, mean_longitude = _place(job.site, east.value, north.value)
+    return MeanMiss(
+        east_m=east,
+        north_m=north,
+        east_on_one_ground_m=on_one[0],
+        north_on_one_ground_m=on_one[1],
+        aim_latitude_deg=latitude,
+        aim_longitude_deg=longitude,
+        latitude_deg=mean_latitude,
+        longitude_deg=mean_longitude,
+        is_distinct=any(one.bounds is not None and not one.bounds[0] <= 0.0 <= one.bounds[1] for one in (east, north)),
+    )
