@@ -155,17 +155,13 @@ def search(
     field_deg: Annotated[float, typer.Option(help="Full field of view of the camera, degrees.", show_default=False)],
     image_pixels: Annotated[int, typer.Option(help="Pixels across it.", min=1, show_default=False)],
     lander_pixels: Annotated[float, typer.Option(help="Pixels along the lander by which it is recognised.")] = 3.0,
-    emission_deg: Annotated[
-        float, typer.Option(help="Largest angle between ground normal and camera, degrees.")
-    ] = 75.0,
+    emission_deg: Annotated[float, typer.Option(help="Largest angle of the camera to the ground normal, deg.")] = 75.0,
     sun_deg: Annotated[float, typer.Option(help="Least elevation of the Sun above the ground, degrees.")] = 5.0,
     size: Annotated[
         float | None, typer.Option(help="Longest extent of the lander, m; default: by the study file.")
     ] = None,
     count: Annotated[int, typer.Option("--count", metavar="N", help="Most images.", min=1)] = 20,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Folder of both files; default: DIR.")
-    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Folder of the files.")] = None,
     force: arguments.Force = False,
 ) -> None:
     """Order images of an orbiter by the chance that they show a lost lander. Writes search.csv and search.png."""

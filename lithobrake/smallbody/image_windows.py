@@ -84,12 +84,13 @@ def image_windows(
     the best k would. Source of that bound: [Nemhauser-1978].
     """
     whole_number("count", count, 1)
+    free = np.ones(shown.shape[1])
     left, edge = numbers("weight", weight).copy(), np.cos(0.5 * field) - 1e-12
     found: list[ImageWindow] = []
     least = LEAST_GAIN * left.sum()
     while len(found) < count:
         best: ImageWindow | None = None
-        bound = left @ shown
+        bound = (left @ shown) * free
         # An image gains at most all that it could show; those that cannot beat the best so far are passed over.
         for image in np.argsort(-bound, kind="stable"):
             if bound[image] <= (best.gain if best else least):
@@ -100,7 +101,7 @@ def image_windows(
         if best is None:
             break
         found.append(best)
-        left[best.shown] = 0.0
+        left[best.shown], free[best.image] = 0.0, 0.0
     return found
 
 

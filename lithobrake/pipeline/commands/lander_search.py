@@ -1,5 +1,6 @@
 """Where to look for the lander of a study: image windows of an orbiter by the chance that they show it."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -26,13 +27,15 @@ if TYPE_CHECKING:
 TABLE, FIGURE = "search.csv", "search.png"
 COLUMNS = (
     "rank", "image", "time", "boresight_x", "boresight_y", "boresight_z", "latitude_deg [deg]", "longitude_deg [deg]",
-    "distance [m]", "pixel [m]", "gain", "found", "found_lower", "found_upper",
+    "distance [m]", "pixel [m]", "found", "found_lower", "found_upper",
 )  # fmt: skip
+# Windows are scored by landers on beds that had no part in their choice: a sixth at a time.
+FOLDS = 6
 REMEDY = "give a table (CSV) with the columns time, x_m, y_m, z_m, sun_x, sun_y, sun_z: body-fixed, a row an image"
 
 
 class Images(NamedTuple):
-    """Images that could be taken: time in words, place of the orbiter [m] and direction of the Sun, [image_count, 3]."""
+    """Images that could be taken: time in words, place of the orbiter [m] and direction of the Sun, [count, 3]."""
 
     time: list[str]
     orbiter: Floats
@@ -44,9 +47,9 @@ class LanderSearch:
     """The windows of a search, and what they add up to.
 
     latitude, longitude: places of rest [deg], [count]; first: number of the window that shows each place first, -1 for
-    none, [count]; found: chance that the windows up to each show the lander, of landers at rest; centre: latitude and
-    longitude [deg] of the mean of the places that each window shows, [window_count, 2]; images: number of all; ever:
-    chance that all images together, each pointed everywhere, would show it.
+    none, [count]; found: chance that the windows up to each show the lander, of landers at rest, by landers on beds
+    that had no part in their choice; centre: latitude and longitude [deg] of the mean of the places that each window
+    shows, [window_count, 2]; distance of the orbiter from it [m]; ever: part of the places that any image could show.
     """
 
     windows: "list[ImageWindow]"
@@ -82,30 +85,45 @@ def search_lander(
     up = shape.normals[shape.nearest(places)[1]]
     extent = size or lander_size(read_study(results.folder / STUDY_FILE).lander)
     shown, toward = recognised(shape, places, up, given.orbiter, given.sun, extent, camera)
-    windows = image_windows(shown, toward, np.ones(len(places)), camera.field, count)
+    everywhere = np.ones(len(places))
+    windows = image_windows(shown, toward, everywhere, camera.field, count)
     if not windows:
         raise ValueError(
             f"none of the {len(given.time)} images of {images} shows a place of rest: too dark, hidden, or too far for "
             f"{camera.pixels:g} pixels on {extent:g} m; give other images, or fewer --lander-pixels"
         )
-    bed, latitude, longitude = (table[name][rest] for name in ("bed", "latitude_deg", "longitude_deg"))
-    return _summed(windows, given, (latitude, longitude), places, bed, float(shown.any(axis=1).mean()))
+    bed = np.unique(table["bed"][rest], return_inverse=True)[1]
+    first = np.full(len(places), -1)
+    for fold in range(FOLDS):
+        held_out = bed % FOLDS == fold
+        chosen = image_windows(shown, toward, everywhere * ~held_out, camera.field, len(windows))
+        first[held_out] = _first_window(chosen, shown, toward, camera.field)[held_out]
+    found = [_found(first, number, bed) for number in range(len(windows))]
+    middle = np.array([places[window.shown].mean(axis=0) for window in windows])
+    centre = np.degrees(
+        [np.arctan2(middle[:, 2], np.hypot(middle[:, 0], middle[:, 1])), np.arctan2(middle[:, 1], middle[:, 0])]
+    ).T
+    distance = np.linalg.norm(given.orbiter[[window.image for window in windows]] - middle, axis=1)
+    latitude, longitude = table["latitude_deg"][rest], table["longitude_deg"][rest]
+    shows = _first_window(windows, shown, toward, camera.field)
+    ever = float(shown.any(axis=1).mean())
+    return LanderSearch(windows, given, latitude, longitude, shows, found, centre, distance, ever)
 
 
-def _summed(
-    windows: "list[ImageWindow]", images: Images, rest: tuple[Floats, Floats], places: Floats, bed: np.ndarray,
-    ever: float,
-) -> LanderSearch:  # fmt: skip
-    first, found, centre, distance = np.full(len(places), -1), [], [], []
+def _first_window(windows: "list[ImageWindow]", shown: np.ndarray, toward: Floats, field: float) -> np.ndarray:
+    """The first of the windows that shows each place, -1 for none, [count]."""
+    first = np.full(len(shown), -1)
     for number, window in enumerate(windows):
-        first[(first < 0) & window.shown] = number
-        hits = (first >= 0).astype(np.float64)
-        lower, upper = plain_interval(hits, bed) or (None, None)
-        found.append(Estimate(float(hits.mean()), lower, upper))
-        middle = places[window.shown].mean(axis=0)
-        centre.append(np.degrees([np.arctan2(middle[2], np.hypot(*middle[:2])), np.arctan2(middle[1], middle[0])]))
-        distance.append(float(np.linalg.norm(images.orbiter[window.image] - middle)))
-    return LanderSearch(windows, images, *rest, first, found, np.array(centre), np.array(distance), ever)
+        inside = toward[:, window.image] @ window.boresight >= np.cos(0.5 * field) - 1e-12
+        first[(first < 0) & shown[:, window.image] & inside] = number
+    return first
+
+
+def _found(first: np.ndarray, number: int, bed: np.ndarray) -> Estimate:
+    """Chance that the windows up to a number show the lander, by places that had no part in their choice."""
+    hits = ((first >= 0) & (first <= number)).astype(np.float64)
+    lower, upper = plain_interval(hits, bed) or (None, None)
+    return Estimate(float(hits.mean()), lower, upper)
 
 
 def read_images(path: Path) -> Images:
@@ -117,18 +135,14 @@ def read_images(path: Path) -> Images:
     values = np.full((len(rows), 6), np.nan)
     for number, row in enumerate(rows):
         for column, name in enumerate(names[1:]):
-            try:
+            with suppress(ValueError):
                 values[number, column] = float(row[name])
-            except ValueError:
-                pass
             if not np.isfinite(values[number, column]):
                 raise ValueError(
                     f"{path}, row {number + 1}: {name} is {show(row[name])}; allowed: a finite number; correct it"
                 )
         if not values[number, 3:].any():
-            raise ValueError(
-                f"{path}, row {number + 1}: the Sun has no direction; allowed: sun_x to sun_z that are not all 0"
-            )
+            raise ValueError(f"{path}, row {number + 1}: sun_x to sun_z are 0; allowed: a direction; correct them")
     return Images([row["time"] for row in rows], values[:, :3], values[:, 3:])
 
 
@@ -138,20 +152,20 @@ def _refuse_inside(shape: "object", images: Images, path: Path) -> None:
     if (height <= 0.0).any():
         row = int(np.argmin(height))
         raise ValueError(
-            f"{path}, row {row + 1}: the orbiter is {-height[row]:.3g} m below the ground; allowed: above it, in metres "
-            "from the centre of the body, in its own axes; correct it"
+            f"{path}, row {row + 1}: the orbiter is {-height[row]:.3g} m below the ground; allowed: above it, in "
+            "metres from the centre of the body, in its own axes; correct it"
         )
 
 
 def lander_size(lander: LanderSection) -> float:
-    """The longest extent of a lander's main shape [m]. Raises ValueError for a mesh, whose extent is not in the study."""
+    """The longest extent of a lander's main shape [m]. Raises ValueError for a mesh and an uncertain diameter."""
     if lander.edges is not None:
         return max(lander.edges)
     if lander.diameter is None:
-        raise ValueError(
-            "the lander is a mesh, and its size for the search is unknown; give its longest extent: --size"
-        )
-    return lander.diameter.median if isinstance(lander.diameter, Uncertain) else lander.diameter
+        raise ValueError("the lander is a mesh, whose extent is unknown here; allowed: --size; give its longest extent")
+    if isinstance(lander.diameter, Uncertain):
+        raise ValueError("the diameter of the lander is uncertain; allowed: --size; give the size to look for")
+    return lander.diameter
 
 
 def write_search(search: LanderSearch, camera: "Camera", folder: Path) -> tuple[Path, Path]:
@@ -165,7 +179,8 @@ def write_search(search: LanderSearch, camera: "Camera", folder: Path) -> tuple[
         bounds = ["" if one is None else one for one in (found.lower, found.upper)]
         rows.append([
             rank + 1, window.image + 1, search.images.time[window.image], *window.boresight.tolist(),
-            *search.centre[rank].tolist(), far, far * camera.pixel, window.gain / len(search.first), found.value, *bounds,
+            *search.centre[rank].tolist(), far, far * camera.pixel, found.value,
+            *bounds,
         ])  # fmt: skip
     table, picture = folder / TABLE, folder / FIGURE
     write_rows(table, list(COLUMNS), iter(rows))
