@@ -1,4 +1,4 @@
-"""A lander of Basilisk bounces to rest, each touchdown drawn from a bounce law.
+"""A bounce law in an event loop of Basilisk: a lander bounces to rest.
 
 lithobrake run quick --out runs/quick
 lithobrake export runs/quick --to bounce-law

@@ -1,4 +1,4 @@
-"""Landers that bounce to rest in a simulation of their own, each touchdown drawn from a bounce law.
+"""A bounce law in a loop of your own: landers bounce to rest.
 
 lithobrake run quick --out runs/quick
 lithobrake export runs/quick --to bounce-law

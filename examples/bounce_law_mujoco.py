@@ -1,4 +1,4 @@
-"""A box hops over flat ground in MuJoCo; a bounce law is its contact with the soil, in place of MuJoCo's own.
+"""A bounce law as the contact with the soil in MuJoCo: a box hops.
 
 lithobrake run quick --out runs/quick
 lithobrake export runs/quick --to bounce-law

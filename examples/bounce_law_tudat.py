@@ -1,4 +1,4 @@
-"""The pattern for tudatpy: arcs that end at the ground, each with the state that a bounce law gives.
+"""A bounce law in tudatpy: the pattern of arcs that end at the ground.
 
 This file was written from the documentation of tudatpy 0.9 and has not been run: tudatpy is installed by conda alone.
 The loop is that of bounce_law_basilisk.py, which runs.

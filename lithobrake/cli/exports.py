@@ -165,18 +165,13 @@ def search(
     force: arguments.Force = False,
 ) -> None:
     """Order images of an orbiter by the chance that they show a lost lander. Writes search.csv and search.png."""
-    import math
-
-    from lithobrake.pipeline import search_lander, search_lines, write_search
-    from lithobrake.pipeline.commands.lander_search import FIGURE, TABLE
+    from lithobrake.pipeline import imager_of, search_files, search_lander, search_lines, write_search
     from lithobrake.results import open_study
-    from lithobrake.smallbody import Camera
 
     results, place = open_study(folder), out or folder
-    for name in (TABLE, FIGURE):
-        arguments.refuse_written(place / name, force)
-    field = math.radians(field_deg)
-    camera = Camera(field, field / image_pixels, lander_pixels, math.radians(emission_deg), math.radians(sun_deg))
-    found = search_lander(results, images, camera, count=count, size=size)
-    paths = write_search(found, camera, place)
+    for path in search_files(place):
+        arguments.refuse_written(path, force)
+    imager = imager_of(field_deg, image_pixels, lander_pixels, emission_deg, sun_deg)
+    found = search_lander(results, images, imager, count=count, size=size)
+    paths = write_search(found, imager, place)
     arguments.tell([*search_lines(found), *(f"Wrote {path}" for path in paths)])

@@ -3,6 +3,8 @@ from .commands.comparison import comparison_files as comparison_files
 from .commands.comparison import comparison_lines as comparison_lines
 from .commands.comparison import write_compared as write_compared
 from .commands.lander_search import LanderSearch as LanderSearch
+from .commands.lander_search import imager_of as imager_of
+from .commands.lander_search import search_files as search_files
 from .commands.lander_search import search_lander as search_lander
 from .commands.lander_search import search_lines as search_lines
 from .commands.lander_search import write_search as write_search

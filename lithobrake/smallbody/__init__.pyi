@@ -18,7 +18,7 @@ from .flight import fly as fly
 from .flight_results import Flights as Flights
 from .hopping import Launch as Launch
 from .hopping import hop as hop
-from .image_windows import Camera as Camera
+from .image_windows import Imager as Imager
 from .image_windows import ImageWindow as ImageWindow
 from .image_windows import image_windows as image_windows
 from .image_windows import recognised as recognised

@@ -15,7 +15,7 @@ LEAST_GAIN = 1e-12
 
 
 @dataclass(frozen=True)
-class Camera:
+class Imager:
     """What an image shows.
 
     field [rad]: full angle of the cone within the image; pixel [rad]: angle of a pixel; pixels: along the lander's
@@ -54,7 +54,7 @@ class ImageWindow:
 
 
 def recognised(
-    shape: Shape, places: ArrayLike, up: ArrayLike, orbiter: ArrayLike, sun: ArrayLike, size: float, camera: Camera
+    shape: Shape, places: ArrayLike, up: ArrayLike, orbiter: ArrayLike, sun: ArrayLike, size: float, camera: Imager
 ) -> tuple[NDArray[np.bool_], Floats]:
     """Whether a lander at each place would be recognised in an image, were the camera pointed at it.
 

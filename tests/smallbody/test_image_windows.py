@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lithobrake.smallbody import Camera, Shape, image_windows, recognised
+from lithobrake.smallbody import Imager, Shape, image_windows, recognised
 
 from .meshes import sphere_mesh
 
@@ -28,15 +28,15 @@ def ball() -> Shape:
 
 
 def test_a_lander_is_recognised_where_it_is_lit_near_and_seen(ball: Shape) -> None:
-    """Camera and Sun over longitude 0: the emission angle is the longitude but for the parallax of 100 m in 10 km."""
+    """Imager and Sun over longitude 0: the emission angle is the longitude but for the parallax of 100 m in 10 km."""
     places, up = on_ball([0.0, 60.0, 70.0, 80.0, 95.0, 180.0])
     above = [[10_000.0, 0.0, 0.0]]
-    camera = Camera(FIELD, PIXEL, pixels=1.0, emission=np.radians(75.0), sun=np.radians(5.0))
+    camera = Imager(FIELD, PIXEL, pixels=1.0, emission=np.radians(75.0), sun=np.radians(5.0))
     found, toward = recognised(ball, places, up, above, [[3.0, 0.0, 0.0]], 1.0, camera)
     assert found[:, 0].tolist() == [True, True, True, False, False, False]
     assert toward[0, 0] == pytest.approx([-1.0, 0.0, 0.0])
     # Of 1 m at 9.9 km a pixel covers 0.93 m; twice as many are not to be had.
-    assert not recognised(ball, places, up, above, [[1.0, 0.0, 0.0]], 1.0, Camera(FIELD, PIXEL, pixels=2.0))[0].any()
+    assert not recognised(ball, places, up, above, [[1.0, 0.0, 0.0]], 1.0, Imager(FIELD, PIXEL, pixels=2.0))[0].any()
     # With the Sun over longitude 90 it stands 5 degrees high at longitude 5.
     lit = recognised(ball, *on_ball([4.0, 6.0, 60.0]), above, [[0.0, 1.0, 0.0]], 1.0, camera)[0]
     assert lit[:, 0].tolist() == [False, True, True]
@@ -46,7 +46,7 @@ def test_ground_hides_a_lander() -> None:
     """Behind a wall of a larger body: a second peak between place and camera."""
     ground = ellipsoid((200.0, 50.0, 50.0), 12)
     place, up = np.array([[0.0, 50.0, 0.0]]), np.array([[0.0, 1.0, 0.0]])
-    camera = Camera(FIELD, PIXEL, pixels=0.1, emission=np.radians(89.0))
+    camera = Imager(FIELD, PIXEL, pixels=0.1, emission=np.radians(89.0))
     low, high = [[1000.0, 40.0, 0.0]], [[1000.0, 400.0, 0.0]]
     assert not recognised(ground, place, up, low, [[0.0, 1.0, 0.0]], 1.0, camera)[0].any()
     assert recognised(ground, place, up, high, [[0.0, 1.0, 0.0]], 1.0, camera)[0].all()
@@ -97,4 +97,4 @@ def test_greedy_windows_show_at_least_what_is_proven() -> None:
 ], ids=str)  # fmt: skip
 def test_a_camera_that_is_none_is_refused(values: dict[str, float], said: str) -> None:
     with pytest.raises(ValueError, match=said):
-        Camera(**{"field": FIELD, "pixel": PIXEL} | values)
+        Imager(**{"field": FIELD, "pixel": PIXEL} | values)

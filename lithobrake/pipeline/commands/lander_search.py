@@ -1,5 +1,6 @@
 """Where to look for the lander of a study: image windows of an orbiter by the chance that they show it."""
 
+import math
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +23,7 @@ from lithobrake.vocabulary.plain_text import show
 
 if TYPE_CHECKING:
     from lithobrake.results.study_results import StudyResults
-    from lithobrake.smallbody.image_windows import Camera, ImageWindow
+    from lithobrake.smallbody.image_windows import Imager, ImageWindow
 
 TABLE, FIGURE = "search.csv", "search.png"
 COLUMNS = (
@@ -64,7 +65,7 @@ class LanderSearch:
 
 
 def search_lander(
-    results: "StudyResults", images: Path, camera: "Camera", *, count: int = 20, size: float | None = None
+    results: "StudyResults", images: Path, imager: "Imager", *, count: int = 20, size: float | None = None
 ) -> LanderSearch:
     """Order the images of a table by the chance that they show the lander of a study, at rest on its body.
 
@@ -84,20 +85,20 @@ def search_lander(
     _refuse_inside(shape, given, images)
     up = shape.normals[shape.nearest(places)[1]]
     extent = size or lander_size(read_study(results.folder / STUDY_FILE).lander)
-    shown, toward = recognised(shape, places, up, given.orbiter, given.sun, extent, camera)
+    shown, toward = recognised(shape, places, up, given.orbiter, given.sun, extent, imager)
     everywhere = np.ones(len(places))
-    windows = image_windows(shown, toward, everywhere, camera.field, count)
+    windows = image_windows(shown, toward, everywhere, imager.field, count)
     if not windows:
         raise ValueError(
             f"none of the {len(given.time)} images of {images} shows a place of rest: too dark, hidden, or too far for "
-            f"{camera.pixels:g} pixels on {extent:g} m; give other images, or fewer --lander-pixels"
+            f"{imager.pixels:g} pixels on {extent:g} m; give other images, or fewer --lander-pixels"
         )
     bed = np.unique(table["bed"][rest], return_inverse=True)[1]
     first = np.full(len(places), -1)
     for fold in range(FOLDS):
         held_out = bed % FOLDS == fold
-        chosen = image_windows(shown, toward, everywhere * ~held_out, camera.field, len(windows))
-        first[held_out] = _first_window(chosen, shown, toward, camera.field)[held_out]
+        chosen = image_windows(shown, toward, everywhere * ~held_out, imager.field, len(windows))
+        first[held_out] = _first_window(chosen, shown, toward, imager.field)[held_out]
     found = [_found(first, number, bed) for number in range(len(windows))]
     middle = np.array([places[window.shown].mean(axis=0) for window in windows])
     centre = np.degrees(
@@ -105,7 +106,7 @@ def search_lander(
     ).T
     distance = np.linalg.norm(given.orbiter[[window.image for window in windows]] - middle, axis=1)
     latitude, longitude = table["latitude_deg"][rest], table["longitude_deg"][rest]
-    shows = _first_window(windows, shown, toward, camera.field)
+    shows = _first_window(windows, shown, toward, imager.field)
     ever = float(shown.any(axis=1).mean())
     return LanderSearch(windows, given, latitude, longitude, shows, found, centre, distance, ever)
 
@@ -124,6 +125,21 @@ def _found(first: np.ndarray, number: int, bed: np.ndarray) -> Estimate:
     hits = ((first >= 0) & (first <= number)).astype(np.float64)
     lower, upper = plain_interval(hits, bed) or (None, None)
     return Estimate(float(hits.mean()), lower, upper)
+
+
+def imager_of(
+    field_deg: float, image_pixels: int, lander_pixels: float, emission_deg: float, sun_deg: float
+) -> "Imager":
+    """A camera by the angles [deg] of the command line and the pixels across its field. Raises ValueError as Imager."""
+    from lithobrake.smallbody import Imager
+
+    field = math.radians(field_deg)
+    return Imager(field, field / image_pixels, lander_pixels, math.radians(emission_deg), math.radians(sun_deg))
+
+
+def search_files(folder: Path) -> tuple[Path, Path]:
+    """The files of a search in a folder: table and map."""
+    return folder / TABLE, folder / FIGURE
 
 
 def read_images(path: Path) -> Images:
@@ -168,7 +184,7 @@ def lander_size(lander: LanderSection) -> float:
     return lander.diameter
 
 
-def write_search(search: LanderSearch, camera: "Camera", folder: Path) -> tuple[Path, Path]:
+def write_search(search: LanderSearch, imager: "Imager", folder: Path) -> tuple[Path, Path]:
     """Write the windows as a table and as a map into a folder; returns both files."""
     from lithobrake.report.figures.search_figure import search_figure
     from lithobrake.report.figures.style import figure_style
@@ -179,10 +195,10 @@ def write_search(search: LanderSearch, camera: "Camera", folder: Path) -> tuple[
         bounds = ["" if one is None else one for one in (found.lower, found.upper)]
         rows.append([
             rank + 1, window.image + 1, search.images.time[window.image], *window.boresight.tolist(),
-            *search.centre[rank].tolist(), far, far * camera.pixel, found.value,
+            *search.centre[rank].tolist(), far, far * imager.pixel, found.value,
             *bounds,
         ])  # fmt: skip
-    table, picture = folder / TABLE, folder / FIGURE
+    table, picture = search_files(folder)
     write_rows(table, list(COLUMNS), iter(rows))
     with figure_style(), atomic_path(picture) as draft:
         search_figure(search.latitude, search.longitude, search.first, search.centre).savefig(

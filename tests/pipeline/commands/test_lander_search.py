@@ -10,7 +10,7 @@ import pytest
 from lithobrake.pipeline import search_lander, search_lines, write_search
 from lithobrake.pipeline.commands.lander_search import read_images
 from lithobrake.results import StudyResults
-from lithobrake.smallbody import Camera
+from lithobrake.smallbody import Imager
 
 TITLES = "time,x_m,y_m,z_m,sun_x,sun_y,sun_z\n"
 
@@ -34,7 +34,7 @@ def around(folder: Path, distance: float, count: int = 12) -> Path:
 def test_the_chance_is_that_of_landers_that_had_no_part_in_the_choice(tmp_path: Path, journeys: StudyResults) -> None:
     """A wide field finds nearly all of them with few images; its table and map are written."""
     rest = journeys.journeys["end"] == "at_rest"
-    camera = Camera(np.radians(20.0), np.radians(20.0) / 4000, pixels=1.0, emission=np.radians(85.0), sun=0.0)
+    camera = Imager(np.radians(20.0), np.radians(20.0) / 4000, pixels=1.0, emission=np.radians(85.0), sun=0.0)
     found = search_lander(journeys, around(tmp_path, 3000.0), camera, count=12, size=5.0)
     values = [one.value for one in found.found]
     assert values == sorted(values)
@@ -55,7 +55,7 @@ def test_the_chance_is_that_of_landers_that_had_no_part_in_the_choice(tmp_path: 
 
 def test_a_field_that_sees_all_finds_all_in_one_image_per_side(tmp_path: Path, journeys: StudyResults) -> None:
     """With every place in sight of one image, that image finds each lander, whichever others were left out."""
-    camera = Camera(np.radians(170.0), 1e-6, pixels=1.0, emission=np.radians(90.0), sun=0.0)
+    camera = Imager(np.radians(170.0), 1e-6, pixels=1.0, emission=np.radians(90.0), sun=0.0)
     found = search_lander(journeys, around(tmp_path, 3000.0), camera, size=5.0)
     seen = [one.value for one in found.found]
     assert seen[-1] == pytest.approx(found.ever, abs=0.05)
@@ -75,8 +75,10 @@ def test_a_table_of_images_that_is_none_is_refused(tmp_path: Path, text: str, sa
 def test_an_orbiter_below_the_ground_and_images_that_show_nothing_are_refused(
     tmp_path: Path, journeys: StudyResults
 ) -> None:
-    camera = Camera(np.radians(5.5), np.radians(5.5) / 1020)
+    camera = Imager(np.radians(5.5), np.radians(5.5) / 1020)
     with pytest.raises(ValueError, match=r"row 1: the orbiter is .* m below the ground; allowed: above it"):
         search_lander(journeys, images(tmp_path, TITLES + "now,0.003,0,0,1,0,0\n"), camera, size=1.0)
-    with pytest.raises(ValueError, match="none of the 12 images of .* shows a place of rest: too dark, hidden, or too"):
+    with pytest.raises(
+        ValueError, match=r"none of the 12 images of .* shows a place of rest: too dark"
+    ):
         search_lander(journeys, around(tmp_path, 1e7), camera, size=0.1)
