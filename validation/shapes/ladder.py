@@ -6,7 +6,7 @@ MESHES is a folder with the meshes that meshes.py names. Writes ladder.csv besid
 of a body have the mass of the finest one. Every comparison is with that one, over SITES places that are evenly spread in direction:
   height     rms distance of the places on the finest mesh from the coarse one, over the radius of equal volume
   slope      mean over the surface, and rms difference at the places [deg]
-  gravity    median and largest relative difference a tenth of the radius above the places
+  gravity    median and largest relative difference ABOVE radii over the places
   landers    released at rest ABOVE radii over the places, on hard ground (RESTITUTION along and across the normal,
              FRICTION where they slide) for a day: median distance between where the same lander ends on the two
              meshes, median distance from release to end, and share at rest
@@ -29,7 +29,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from harness import Row, command_line, timed, write_made, write_rows
 
 SITES, SLOPES_OF = 200, 2000
-ABOVE, SHIFT, REST_HEIGHT = 0.05, 1e-4, 1e-4  # in radii
+ABOVE, SHIFT, REST_HEIGHT = 0.1, 1e-4, 1e-4  # in radii
 RESTITUTION, FRICTION = (0.6, 0.8), 0.6
 GRAVITY_FACETS = 600
 
@@ -88,7 +88,7 @@ def row_of(path: Path, key: str, finest: Body, places: np.ndarray, ends: Landers
     height = body.shape.nearest(places)[0]
     slope = slopes_deg(facets, facets.acceleration, body.spin_rate)
     away = site_slopes_deg(body, places) - site_slopes_deg(finest, places)
-    over = places * (1.0 + 0.1 * radius / np.linalg.norm(places, axis=1, keepdims=True))
+    over = places * (1.0 + ABOVE * radius / np.linalg.norm(places, axis=1, keepdims=True))
     pull, theirs = body.acceleration(over), finest.acceleration(over)
     off = np.linalg.norm(pull - theirs, axis=1) / np.linalg.norm(theirs, axis=1)
     found = followed(thin_body(path, finest), places, shift)
