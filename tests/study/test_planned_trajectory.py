@@ -42,7 +42,9 @@ def write_trajectory(folder: Path) -> None:
 
 
 @pytest.fixture
-def printed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Iterator[dict[str, float]]:
+def printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Iterator[dict[str, float]]:
     """What the block of the page prints, by key, run in a folder with kernels of a test."""
     write_kernels(tmp_path)
     spice.furnsh(str(tmp_path / "leap.tls"))

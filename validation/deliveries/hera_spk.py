@@ -6,8 +6,8 @@ KERNELS is the folder `kernels` of https://github.com/GregoireHENRY/hera-pmi at 
 the states of docs/howto/delivery_from_spk.md with its own code, and follows the landers to rest on hard ground of
 restitution 0.5. Writes hera_spk.json beside this script. Tolerances, set before the first run:
   starts   body-fixed states within 1 mm and 1e-6 m/s of SPICE's
-  coast    Hera itself, flown from its state at the epoch under the gravity of Didymos and Dimorphos, for COASTS: within
-           1 % of the way of where the trajectory has it; the trajectory has the masses of its own time, and sunlight
+  coast    Hera itself, flown from its state at the epoch under the gravity of Didymos and Dimorphos, for COASTS or to
+           its escape: within 1 % of the way of where the trajectory has it, which has masses of its own time, and sunlight
 """
 
 import contextlib
@@ -60,7 +60,7 @@ def made(folder: Path, kernels: Path) -> tuple[dict[str, Any], dict[str, float]]
 def tables_of(folder: Path, names: dict[str, Any], site: dict[str, float]) -> Row:
     kernels = [folder / one for one in [*names["KERNELS"], PARTNER_KERNEL]]
     place = read_partner(kernels, names["BODY"], PARTNER, names["EPOCH"])
-    delivery = {"latitude_deg": 0.0, "longitude_deg": 0.0, "states": str(folder / "release.csv"), "frame": "icrf",
+    delivery = {"latitude_deg": 60.0, "longitude_deg": 0.0, "states": str(folder / "release.csv"), "frame": "icrf",
                 "epoch": names["EPOCH"], "release": None}  # fmt: skip
     around = {"body": "didymos", "partner_longitude_deg": (place.longitude_deg + 180.0) % 360.0 - 180.0, **site}
     changes = {"delivery": delivery, "site": around, "journey": {"count": JOURNEYS}}
@@ -92,9 +92,19 @@ def coasts(names: dict[str, Any], study: Any) -> list[Row]:
     rows, (place, velocity, begin) = [], fixed(names["epoch"])
     for duration in COASTS:
         flown = fly(body, place, velocity, duration)
-        there, _, end = fixed(names["epoch"] + duration)
+        # A craft that flies away is followed until it is far enough that it does not come back.
+        lasted = float(flown.time[0])
+        there, _, end = fixed(names["epoch"] + lasted)
         way, off = float(np.linalg.norm(end - begin)), float(np.linalg.norm(flown.position[0] - there))
-        rows.append({"duration_s": duration, "way_m": way, "off_m": off, "agrees": off <= COAST * way})
+        rows.append(
+            {
+                "duration_s": lasted,
+                "status": str(flown.status[0]),
+                "way_m": way,
+                "off_m": off,
+                "agrees": off <= COAST * way,
+            }
+        )
     return rows
 
 
@@ -119,6 +129,7 @@ def main() -> None:
             "distance_m": [float(distance.min()), float(distance.max())], "starts": {**away, "agrees": agrees},
             "coasts": coasts(names, study), "flights": dict(Counter(flights.status.tolist())),
             "ends": dict(Counter(found.journeys["end"].tolist())),
+            "touchdowns": float(np.median(found.journeys["touchdowns"])),
             "delivery": {key: [float(one) for one in getattr(found.results.delivery, key)]
                          for key in ("speed", "incidence_deg", "descent_s")},
         }  # fmt: skip

@@ -67,6 +67,16 @@ def read_shape(path: Path, gravity_facets: int | None = None) -> Shape:
     return Shape(1e3 * np.array(vertices), np.array(faces, dtype=np.int64))
 
 
+def smoothed(shape: Shape) -> Shape:
+    """The shape with each vertex moved half the way to the mean of its neighbours."""
+    ends = np.unique(np.sort(shape.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1), axis=0)
+    total, count = np.zeros_like(shape.vertices), np.zeros(len(shape.vertices))
+    for one, other in (ends.T, ends.T[::-1]):
+        np.add.at(total, one, shape.vertices[other])
+        np.add.at(count, one, 1.0)
+    return Shape(0.5 * (shape.vertices + total / count[:, None]), shape.faces)
+
+
 def body_of(key: str, shape: Shape, density: float | None = None, period_h: float | None = None) -> Body:
     """The body of a key with this shape; its mass follows from the density and the volume."""
     known = BODIES[key]
@@ -122,9 +132,11 @@ def measures(facets: Facets, spin_rate: float, of_density: float = 1.0) -> Row:
     across = facets.centre[:, 0] ** 2 + facets.centre[:, 1] ** 2
     potential = -of_density * facets.potential - 0.5 * spin_rate**2 * across
     mean = float(share @ potential)
+    low, high = np.abs(latitude) < 20.0, np.abs(latitude) >= 60.0
     return {
-        "mean_deg": float(slope.mean()), "equator_deg": float(slope[np.abs(latitude) < 20.0].mean()),
-        "pole_deg": float(slope[np.abs(latitude) >= 60.0].mean()), "area_mean_deg": float(share @ slope),
+        "mean_deg": float(slope.mean()), "equator_deg": float(slope[low].mean()), "pole_deg": float(slope[high].mean()),
+        "area_mean_deg": float(share @ slope), "area_equator_deg": float(np.average(slope[low], weights=share[low])),
+        "area_pole_deg": float(np.average(slope[high], weights=share[high])),
         "area_mean_turned_deg": float(share @ turned), "mean_turned_deg": float(turned.mean()),
         "facing_centre": float((turned != slope).mean()), "steepest_deg": float(slope.max()),
         "potential_spread": float(np.sqrt(share @ (potential - mean) ** 2) / abs(mean)),

@@ -2,11 +2,12 @@
 
     python validation/shapes/slopes.py --meshes MESHES
 
-MESHES is a folder with the meshes that meshes.py names. Writes slopes.csv beside this script (what published.py
-compares, one line a body and density) and slopes_facets.csv (the other code, one line a mesh), each with how it was
-made. Means are over at most 8000 facets, every so many of a finer mesh. The other code is polyhedral-gravity (pip
-install "polyhedral-gravity>=3.2"), which the source of the published numbers also used, at 1000 facets. It is asked a little inside the mesh, as the
-source did: by 1e-4 of the diagonal; lithobrake is asked at the same points, and on the facets.
+MESHES is a folder with the meshes that meshes.py names. Writes two tables beside this script, each with how it was
+made: slopes.csv, what published.py compares, one line a body, mesh and density (smoothed: each vertex moved half the
+way to the mean of its neighbours); and slopes_facets.csv, the other code, one line a mesh. Means are over at most 8000
+facets, every so many of a finer mesh. The other code is polyhedral-gravity (pip install "polyhedral-gravity>=3.2"),
+which the source of the published numbers used, at 1000 facets of a mesh. It is asked a little inside the mesh, as the
+source did: by 1e-4 of the diagonal; lithobrake is asked on the facets, and at the same points.
 """
 
 import sys
@@ -14,7 +15,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-from meshes import BODIES, HERE, Facets, body_of, facets_of, measures, read_shape, slopes_deg
+from meshes import BODIES, HERE, body_of, facets_of, measures, read_shape, slopes_deg, smoothed
 from published import CLOSE_DEG, PUBLISHED
 
 from lithobrake.smallbody import Body
@@ -27,13 +28,14 @@ INSIDE = 1e-4
 COMMAND = "validation/shapes/slopes.py --meshes MESHES"
 
 
-def published_rows(key: str, body: Body, facets: Facets) -> list[Row]:
-    """One line for each density and period at which the source has numbers of this body."""
-    rows = []
+def published_rows(key: str, mesh: str, body: Body) -> list[Row]:
+    """One line for each density and period at which the source has numbers of this body; mesh: what it is, in a word."""
+    facets, rows = facets_of(body, MEAN_OF), []
     for density, period_h in dict.fromkeys((one.density, one.period_h) for one in PUBLISHED if one.body == key):
         own = body_of(key, body.shape, density, period_h)
         found = measures(facets, own.spin_rate, density / body.density)
-        rows.append({"body": key, "facets": len(body.shape.faces), "averaged": len(facets.area), "density": density, "period_h": period_h, **found})
+        count = {"facets": len(body.shape.faces), "averaged": len(facets.area)}
+        rows.append({"body": key, "mesh": mesh, **count, "density": density, "period_h": period_h, **found})
     return rows
 
 
@@ -75,7 +77,8 @@ def main() -> None:
         finest = known.meshes[-1]
         body = body_of(key, read_shape(folder / finest))
         if any(one.body == key for one in PUBLISHED):
-            means += published_rows(key, body, facets_of(body, MEAN_OF))
+            means += published_rows(key, "public", body)
+            means += published_rows(key, "smoothed", body_of(key, smoothed(body.shape)))
         by_facet.append(facet_row(key, finest.name, body))
         print(by_facet[-1], flush=True)
     for name, rows in (("slopes", means), ("slopes_facets", by_facet)):
