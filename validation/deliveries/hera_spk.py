@@ -7,7 +7,7 @@ the states of docs/howto/delivery_from_spk.md with its own code, and follows the
 restitution 0.5. Writes hera_spk.json beside this script. Tolerances, set before the first run:
   starts   body-fixed states within 1 mm and 1e-6 m/s of SPICE's
   coast    Hera itself, flown from its state at the epoch under the gravity of Didymos and Dimorphos, for COASTS or to
-           its escape: within 1 % of the way of where the trajectory has it, which has masses of its own time, and sunlight
+           its escape: within 1 % of the way of where the trajectory has it, which has masses of its own time
 """
 
 import contextlib

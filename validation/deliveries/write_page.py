@@ -61,7 +61,8 @@ def main() -> None:
     hera, told = hera_lines(kept), message_lines(rows)
     lenient = sum(row["states"] > 0 for row in rows if row["verdict"] == "invalid")
     write_page(
-        "deliveries", agreeing=sum(held for held, _ in [*hera, *told]), count=len(hera) + len(told), landers=kept["landers"],
+        "deliveries", agreeing=sum(held for held, _ in [*hera, *told]), count=len(hera) + len(told),
+        landers=kept["landers"],
         hera=table(("quantity", "tolerance", "difference", "agrees"), ((*cells, yes(held)) for held, cells in hera)),
         outcome=outcome(kept), files=len(rows), lenient=lenient,
         messages=table(

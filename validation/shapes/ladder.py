@@ -2,8 +2,9 @@
 
     python validation/shapes/ladder.py --meshes MESHES
 
-MESHES is a folder with the meshes that meshes.py names. Writes ladder.csv beside this script, one line a mesh. All meshes
-of a body have the mass of the finest one. Every comparison is with that one, over SITES places that are evenly spread in direction:
+MESHES is a folder with the meshes that meshes.py names. Writes ladder.csv beside this script, one line a mesh. All
+meshes of a body have the mass of the finest one. Every comparison is with that one, over SITES places that are evenly
+spread in direction:
   height     rms distance of the places on the finest mesh from the coarse one, over the radius of equal volume
   slope      mean over the surface, and rms difference at the places [deg]
   gravity    median and largest relative difference ABOVE radii over the places
@@ -98,9 +99,11 @@ def row_of(path: Path, key: str, finest: Body, places: np.ndarray, ends: Landers
     return {
         "body": key, "mesh": path.name, "case": "shifted" if shift else "mesh", "facets": len(body.shape.faces),
         "radius_m": radius, "edge_m": float(np.sqrt(4.0 / np.sqrt(3.0) * facets.area.mean())),
-        "height_rms": float(np.sqrt((height**2).mean()) / radius), "slope_deg": float(facets.area @ slope / facets.area.sum()),
+        "height_rms": float(np.sqrt((height**2).mean()) / radius),
+        "slope_deg": float(facets.area @ slope / facets.area.sum()),
         "slope_rms_deg": float(np.sqrt((away**2).mean())), "gravity_median": float(np.median(off)),
-        "gravity_largest": float(off.max()), "both_at_rest": int(rests.sum()), "at_rest": float((found.end == "at_rest").mean()),
+        "gravity_largest": float(off.max()), "both_at_rest": int(rests.sum()),
+        "at_rest": float((found.end == "at_rest").mean()),
         "apart": float(np.median(apart) / radius), "travelled": float(np.median(travelled) / radius),
         "touchdowns": float(found.touchdowns.mean()),
     }  # fmt: skip

@@ -29,7 +29,7 @@ COMMAND = "validation/shapes/slopes.py --meshes MESHES"
 
 
 def published_rows(key: str, mesh: str, body: Body) -> list[Row]:
-    """One line for each density and period at which the source has numbers of this body; mesh: what it is, in a word."""
+    """One line for each density and period at which the source has numbers of this body. mesh: its name."""
     facets, rows = facets_of(body, MEAN_OF), []
     for density, period_h in dict.fromkeys((one.density, one.period_h) for one in PUBLISHED if one.body == key):
         own = body_of(key, body.shape, density, period_h)
@@ -62,8 +62,9 @@ def facet_row(key: str, name: str, body: Body) -> Row:
     on_facets = slopes_deg(some, some.acceleration, body.spin_rate)
     away = on_facets - theirs
     return {
-        "body": key, "mesh": name, "facets": len(body.shape.faces), "compared": len(some.area), "mean_deg": on_facets.mean(),
-        "other_mean_deg": theirs.mean(), "correlation": np.corrcoef(on_facets, theirs)[0, 1],
+        "body": key, "mesh": name, "facets": len(body.shape.faces), "compared": len(some.area),
+        "mean_deg": on_facets.mean(), "other_mean_deg": theirs.mean(),
+        "correlation": np.corrcoef(on_facets, theirs)[0, 1],
         "rms_deg": np.sqrt((away**2).mean()), "close_share": (np.abs(away) <= CLOSE_DEG).mean(),
         "largest_deg": np.abs(away).max(), "largest_same_points_deg": np.abs(ours - theirs).max(), "other_cpu_s": cost,
     }  # fmt: skip
