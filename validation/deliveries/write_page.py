@@ -12,7 +12,7 @@ from harness import Row, read_document, read_rows
 from page import made, table, write_page, yes
 
 HERE = Path(__file__).parent
-WORDS = {"at_rest": "at rest", "under_way": "under way after a day", "escaped": "escaped", "partner": "on Dimorphos"}
+WORDS = {"at_rest": "at rest", "under_way": "still under way", "escaped": "escaped", "partner": "on Dimorphos"}
 
 
 def hera_lines(kept: Row) -> list[tuple[bool, tuple[str, ...]]]:

@@ -6,6 +6,7 @@ python validation/shapes/write_page.py
 import sys
 from pathlib import Path
 
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from meshes import HERE
 from published import CLOSE_SHARE, CORRELATION, PUBLISHED, RMS_DEG, WITHIN, Published
 
@@ -24,12 +25,14 @@ NAMES = {
     "bennu_radar": "Bennu (radar)", "2008ev5": "2008 EV5", "eros": "Eros", "67p": "67P", "phobos": "Phobos",
     "bennu": "Bennu (OSIRIS-REx)", "itokawa": "Itokawa",
 }  # fmt: skip
+# What the page asks of a mesh beside the finest, and what of a mesh is as good as equal to it.
+SLOPE, GRAVITY, END, EQUAL = 5.0, 0.01, 0.05, 1e-9
 PANELS = (
-    ("height_rms", "height [radii]", "Height, rms"), ("slope_rms_deg", "slope [deg]", "Slope at a place, rms"),
-    ("gravity_median", "relative", "Gravity a tenth of a radius up, median"),
-    ("apart", "distance [radii]", "Where the same lander ends, median"),
-)  # fmt: skip
-FINE, SLOPE, GRAVITY, END = 0.05, 5.0, 0.01, 0.05  # what the page asks of a mesh, beside the finest
+    ("height_rms", "difference [radii]", "Height of a place, rms", None),
+    ("slope_rms_deg", "difference [deg]", "Slope at a place, rms", SLOPE),
+    ("gravity_median", "relative difference", "Gravity a tenth of a radius up, median", GRAVITY),
+    ("apart", "distance [radii]", "Between ends of the same lander, median", END),
+)
 
 
 def slopes() -> list[Row]:
@@ -106,40 +109,60 @@ def ladder_table() -> str:
 
 
 def draw() -> None:
-    """Differences from the finest mesh over the length of an edge, four questions in four panels."""
-    rows = [row for row in ladder() if row["case"] == "mesh" and row["height_rms"] > 1e-9]
-    shifted = {row["body"]: row for row in ladder() if row["case"] == "shifted"}
+    """Differences from the finest mesh over the count of facets, four questions in four panels."""
+    rows = [row for row in ladder() if row["case"] == "mesh" and row["height_rms"] > EQUAL]
     bodies = list(dict.fromkeys(row["body"] for row in rows))
     with figure(PAGES / "shapes.png", 2, 2, (9.2, 6.8), dpi=150) as (_, axes):
-        for axis, (name, unit, title) in zip(axes.flat, PANELS, strict=True):
+        for axis, (name, unit, title, limit) in zip(axes.flat, PANELS, strict=True):
             for colour, body in zip(INPUT_COLOURS, bodies, strict=False):
                 own = [row for row in rows if row["body"] == body]
-                edge = [row["edge_m"] / row["radius_m"] for row in own]
-                axis.plot(edge, [row[name] for row in own], "o-", color=colour, lw=1.6, ms=4, label=NAMES[body])
-                if name == "apart":
-                    axis.axhline(shifted[body][name], color=colour, lw=1.0, ls=":")
-            axis.set(xscale="log", yscale="log", xlabel="edge of a facet [radii]", ylabel=unit)
+                count, values = [row["facets"] for row in own], [row[name] for row in own]
+                axis.plot(count, values, "o-", color=colour, lw=1.6, ms=4, label=NAMES[body])
+            axis.set(xscale="log", yscale="log", xlabel="facets", ylabel=unit)
+            for scale in (axis.xaxis, axis.yaxis):
+                scale.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                scale.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+                scale.set_minor_formatter(NullFormatter())
             axis.set_title(title)
-        for axis, value in zip(axes.flat, (None, SLOPE, GRAVITY, END), strict=True):
-            if value is not None:
-                axis.axhline(value, color=QUIET, lw=1.0, ls="--")
+            if limit:
+                axis.axhline(limit, color=QUIET, lw=1.0, ls="--")
         axes[0, 0].legend(fontsize=8)
 
 
 def enough(name: str, most: float) -> str:
-    """Largest edge of a body's meshes, in radii, from which on all finer ones are within a difference; by body."""
+    """Facets of the coarsest mesh of each body from which on all finer ones are within a difference."""
     found = []
     for body in dict.fromkeys(row["body"] for row in ladder()):
         own = [row for row in ladder() if row["body"] == body and row["case"] == "mesh"]
-        fine = [row for row in own if row["height_rms"] > 1e-9]
-        kept = [row for k, row in enumerate(fine) if all(one[name] <= most for one in fine[k:])]
-        found.append(
-            f"{NAMES[body]} {kept[0]['facets']:.0f}" if kept else f"{NAMES[body]} none below {own[-1]['facets']:.0f}"
-        )
+        coarse = [row for row in own if row["height_rms"] > EQUAL]
+        kept = [row for k, row in enumerate(coarse) if all(one[name] <= most for one in coarse[k:])]
+        said = f"{kept[0]['facets']:.0f}" if kept else f"the finest alone ({own[-1]['facets']:.0f})"
+        found.append(f"{NAMES[body]} {said}")
     return ", ".join(found)
 
 
+def ends() -> tuple[str, str]:
+    """How far coarse meshes move the median distance travelled, at most, and the same lander, in parts of that."""
+    changed, moved = [], []
+    for body in dict.fromkeys(row["body"] for row in ladder()):
+        *coarse, finest = (row for row in ladder() if row["body"] == body and row["case"] == "mesh")
+        changed += [abs(row["travelled"] / finest["travelled"] - 1.0) for row in coarse]
+        moved += [row["apart"] / finest["travelled"] for row in coarse]
+    return f"{100.0 * max(changed):.0f} %", f"{100.0 * min(moved):.0f} to {100.0 * max(moved):.0f} %"
+
+
+def equator() -> dict[str, str]:
+    """Slopes of Bennu near its equator: published, by area, and after smoothing."""
+    one = next(one for one in PUBLISHED if one.measure == "equator_deg")
+    own = {row["mesh"]: row for row in slopes() if (row["body"], row["density"]) == (one.body, one.density)}
+    return {
+        "published_equator": f"{one.value:g}", "area_equator": f"{own['public']['area_equator_deg']:.2f}",
+        "smooth_equator": f"{own['smoothed']['area_equator_deg']:.2f}",
+    }  # fmt: skip
+
+
 def main() -> None:
+    travelled, moved = ends()
     lines = quantities()
     agreeing = sum(held for held, _ in lines)
     shown = sum(not held and cells[-1] != "not shown" for held, cells in lines)
@@ -149,6 +172,7 @@ def main() -> None:
         quantities=table(HEADS, (cells for _, cells in lines)), facets=facet_table(), ladder=ladder_table(),
         within=f"{100.0 * WITHIN:g} %", gravity_enough=enough("gravity_median", GRAVITY),
         slope_enough=enough("slope_rms_deg", SLOPE), end_enough=enough("apart", END),
+        travelled=travelled, moved=moved, **equator(),
         slopes_made=made(kept["slopes"], f"{kept['slopes']['cpu_s']} s of CPU time"),
         ladder_made=made(kept["ladder"], f"{kept['ladder']['cpu_s']} s of CPU time"),
     )  # fmt: skip
