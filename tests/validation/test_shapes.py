@@ -26,7 +26,7 @@ def meshes(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
 
 def test_slopes_of_a_sphere_that_turns_are_those_of_the_closed_form(meshes: dict[str, Any]) -> None:
-    """With k = w^2 R / g: tan(slope) = k sin(lat) cos(lat) / (1 - k cos(lat)^2), and the potential -g R (1 + k/2 cos^2).
+    """With k = w^2 R / g: tan(slope) = k sin cos / (1 - k cos^2), and the potential is -g R (1 + k/2 cos^2).
 
     Facets of a sphere of 18 432 are within a degree of its tangent planes.
     """
