@@ -1,8 +1,8 @@
 """A public planning trajectory of Hera as the delivery of a study: where SPICE and lithobrake have it, and how it ends.
 
-    python validation/deliveries/hera_spk.py --kernels KERNELS
+    python validation/deliveries/hera_spk.py --kernels FOLDER
 
-KERNELS is the folder `kernels` of https://github.com/GregoireHENRY/hera-pmi at 0d0d3a8 (which states no licence). Makes
+FOLDER is the folder `kernels` of https://github.com/GregoireHENRY/hera-pmi at 0d0d3a8 (which states no licence). Makes
 the states of docs/howto/delivery_from_spk.md with its own code, and follows the landers to rest on hard ground of
 restitution 0.5. Writes hera_spk.json beside this script. Tolerances, set before the first run:
   starts   body-fixed states within 1 mm and 1e-6 m/s of SPICE's
@@ -124,7 +124,7 @@ def main() -> None:
         )
         agrees = away["position_m"] <= POSITION and away["velocity_m_s"] <= VELOCITY
         document = {
-            **origin("validation/deliveries/hera_spk.py --kernels KERNELS"), "commit": "0d0d3a8", "site": site,
+            **origin("validation/deliveries/hera_spk.py --kernels FOLDER"), "commit": "0d0d3a8", "site": site,
             "partner_longitude_deg": tables["site"]["partner_longitude_deg"], "landers": len(states),
             "distance_m": [float(distance.min()), float(distance.max())], "starts": {**away, "agrees": agrees},
             "coasts": coasts(names, study), "flights": dict(Counter(flights.status.tolist())),

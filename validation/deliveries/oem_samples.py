@@ -1,8 +1,8 @@
 """What the reader of states says of the sample messages of another reader, beside the verdict of their authors.
 
-    python validation/deliveries/oem_samples.py --samples SAMPLES
+    python validation/deliveries/oem_samples.py --samples FOLDER
 
-SAMPLES is the folder tests/samples of https://github.com/bradsease/oem at 126d02a (MIT licence); its folders name the
+FOLDER is the folder tests/samples of https://github.com/bradsease/oem at 126d02a (MIT licence); its folders name the
 verdicts: valid, invalid, and real for messages that flight software wrote. Writes oem_samples.csv beside this script:
 one line a file, the verdict, what became of it, and of a refusal the sentence. A message is read for its own centre.
 """
@@ -56,7 +56,7 @@ def main() -> None:
     samples = command_line(__doc__, samples=Path).parse_args().samples
     rows = [row_of(path, samples) for path in sorted(samples.rglob("*")) if path.is_file()]
     write_rows(TABLE, COLUMNS, rows)
-    write_made(TABLE, "validation/deliveries/oem_samples.py --samples SAMPLES", commit="126d02a", rows=len(rows))
+    write_made(TABLE, "validation/deliveries/oem_samples.py --samples FOLDER", commit="126d02a", rows=len(rows))
     for verdict in ("real", "valid", "invalid"):
         own = [row for row in rows if row["verdict"] == verdict]
         for form in dict.fromkeys(row["form"] for row in own):

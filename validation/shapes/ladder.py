@@ -1,8 +1,8 @@
 """How fine must a shape be: height, slope, gravity and where landers end, on coarse meshes of a body and on its finest.
 
-    python validation/shapes/ladder.py --meshes MESHES
+    python validation/shapes/ladder.py --meshes FOLDER
 
-MESHES is a folder with the meshes that meshes.py names. Writes ladder.csv beside this script, one line a mesh. All
+FOLDER has the meshes that meshes.py names. Writes ladder.csv beside this script, one line a mesh. All
 meshes of a body have the mass of the finest one. Every comparison is with that one, over SITES places that are evenly
 spread in direction:
   height     rms distance of the places on the finest mesh from the coarse one, over the radius of equal volume
@@ -130,7 +130,7 @@ def main() -> None:
     warnings.filterwarnings("ignore", message=".*the centre of mass lies at")
     rows = [row for key, known in BODIES.items() if len(known.meshes) > 1 for row in ladder(folder, key)]
     write_rows(HERE / "ladder.csv", rows[0], rows)
-    write_made(HERE / "ladder.csv", "validation/shapes/ladder.py --meshes MESHES", rows=len(rows))
+    write_made(HERE / "ladder.csv", "validation/shapes/ladder.py --meshes FOLDER", rows=len(rows))
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 """Slopes per facet of public meshes: their means beside published ones, and facet by facet beside another code.
 
-    python validation/shapes/slopes.py --meshes MESHES
+    python validation/shapes/slopes.py --meshes FOLDER
 
-MESHES is a folder with the meshes that meshes.py names. Writes two tables beside this script, each with how it was
+FOLDER has the meshes that meshes.py names. Writes two tables beside this script, each with how it was
 made: slopes.csv, what published.py compares, one line a body, mesh and density (smoothed: each vertex moved half the
 way to the mean of its neighbours); and slopes_facets.csv, the other code, one line a mesh. Means are over at most 8000
 facets, every so many of a finer mesh. The other code is polyhedral-gravity (pip install "polyhedral-gravity>=3.2"),
@@ -25,7 +25,7 @@ from harness import Row, command_line, write_made, write_rows
 
 MEAN_OF, ASKED = 8000, 1000  # facets of a mesh: those of a mean, and those at which the other code is asked
 INSIDE = 1e-4
-COMMAND = "validation/shapes/slopes.py --meshes MESHES"
+COMMAND = "validation/shapes/slopes.py --meshes FOLDER"
 
 
 def published_rows(key: str, mesh: str, body: Body) -> list[Row]:
