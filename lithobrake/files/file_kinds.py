@@ -52,6 +52,9 @@ _MAGIC = {
     b"\x89HDF": FileKind.HDF5,
     b"PK\x03\x04": FileKind.ARCHIVE,
     b"\x1f\x8b": FileKind.ARCHIVE,
+    b"BZh": FileKind.ARCHIVE,
+    b"\xfd7zXZ\x00": FileKind.ARCHIVE,
+    b"]\x00\x00\x80\x00": FileKind.ARCHIVE,
     b"\xff\xfe": FileKind.UTF16,
     b"\xfe\xff": FileKind.UTF16,
 }

@@ -76,11 +76,19 @@ def _refuse_lacking(path: Path, number: int, segment: dict[str, str]) -> None:
     lacking = [key for key in NEEDED if not segment.get(key)]
     if lacking:
         raise ValueError(f"{path}, line {number}: the segment has no {', '.join(lacking)}; add it below META_START")
+    ends = []
     for key in USEABLE:
         try:
-            useable_time(segment, key)
+            ends.append(useable_time(segment, key))
         except ValueError as error:
             raise ValueError(f"{path}, line {number}: {key} {error}; mend it") from error
+    begin, end = ends
+    # All its states would be passed over without a word.
+    if begin is not None and end is not None and end.since(begin) < 0.0:
+        raise ValueError(
+            f"{path}, line {number}: USEABLE_STOP_TIME {segment[USEABLE[1]]} is before USEABLE_START_TIME "
+            f"{segment[USEABLE[0]]}; swap them"
+        )
 
 
 def useable_time(segment: dict[str, str], key: str) -> Epoch | None:

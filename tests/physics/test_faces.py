@@ -213,6 +213,34 @@ def test_sphere_presses_on_a_face_as_on_a_plane():
     assert contact["normal_force"] == pytest.approx(4 / 3 * modulus * math.sqrt(radius) * 1e-4**1.5, rel=1e-9)
 
 
+# A cube of 20 mm whose upper face is cut in triangles, about (0, 0, -0.01).
+CUBE = np.array([(x, y, z) for x in (-0.01, 0.01) for y in (-0.01, 0.01) for z in (-0.01, 0.01)])
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.003, 0.003), (0.004, -0.002), (0.009, 0.0)])
+def test_a_ball_leaves_a_wall_of_facets_as_it_leaves_a_plane(place):
+    """A ball of 1 mm at 0.610557 m/s with e = 0.50: in a face, on the edge of its triangles, and near its rounded rim.
+
+    The case is issue 73 of DEM-Engine, where the two walls differ: both must give 0.305279 m/s.
+    """
+    stuff, speed = material(0.50, 0.0, 1e7), 0.610557
+    left = {}
+    for wall in ("plane", "box", "hull"):
+        world = World(time_step=2e-7)
+        world.add_body(Sphere(0.5e-3), stuff, (*place, 0.5001e-3), velocity=(0.0, 0.0, -speed))
+        heavy = Material(young_modulus=1e7, poisson_ratio=0.25, restitution=0.50, friction=0.0, density=1e12)
+        if wall == "plane":
+            world.add_plane((0, 0, 0), (0, 0, 1), heavy)
+        else:
+            world.add_body(Box((0.02, 0.02, 0.02)) if wall == "box" else ConvexHull(CUBE), heavy, (0, 0, -0.01))
+        world.run(duration=2e-3)
+        assert len(world.contacts()) == 0
+        left[wall] = world.velocity[0]
+    for velocity in left.values():
+        assert velocity[2] == pytest.approx(0.5 * speed, rel=0.005)
+        assert velocity == pytest.approx(left["plane"], abs=1e-3 * speed)
+
+
 @pytest.mark.parametrize("depth", [0.3, 0.6, 0.7, 0.8, 0.95])
 def test_elastic_faces_give_back_all_they_take(depth):
     """e = 1, mu = 0, two cubes pressed face to face to a part of their rounding: nothing is damped at any depth."""

@@ -2,6 +2,7 @@
 
 import math
 import struct
+import warnings
 
 import numpy as np
 import pytest
@@ -106,6 +107,30 @@ def test_inverted_orientation_is_mended_and_said():
     mixed[[3, 7]] = mixed[[3, 7], ::-1]
     with pytest.warns(UserWarning, match="2 of 12 facets faced inwards"):
         assert Shape(cube_vertices(), mixed).volume == pytest.approx(1.0)
+
+
+def test_a_valid_mesh_is_taken_as_it_is(tmp_path):
+    """A ring, whose inner facets face its centre: nothing is turned or mended, and its volume is 2 pi^2 R r^2.
+
+    A library that mended valid meshes once doubled what it computed of them.
+    """
+    around, across = 96, 48
+    one, other = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
+    turn, tilt = 2.0 * np.pi * one / around, 2.0 * np.pi * other / across
+    reach = 3.0 + np.cos(tilt)
+    vertices = np.stack([reach * np.cos(turn), reach * np.sin(turn), np.sin(tilt)], axis=-1).reshape(-1, 3)
+    corner = [(one + i) % around * across + (other + k) % across for i, k in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    halves = [np.stack([corner[k] for k in which], axis=-1) for which in ((0, 1, 2), (0, 2, 3))]
+    faces = np.concatenate([half.reshape(-1, 3) for half in halves])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        shape, read = Shape(vertices, faces), Shape.read(write_obj(tmp_path / "ring.obj", vertices, faces))
+    inner = (shape.normals * shape.corners.mean(axis=1)).sum(axis=1) < 0.0
+    assert 0.3 < inner.mean() < 0.5
+    for taken in (shape, read):
+        np.testing.assert_array_equal(taken.faces, faces)
+        np.testing.assert_array_equal(taken.vertices, vertices)
+        assert taken.volume == pytest.approx(2.0 * math.pi**2 * 3.0, rel=0.005)
 
 
 def test_reading_refuses_what_it_cannot_read(tmp_path):

@@ -214,6 +214,8 @@ META_STOP
     (("META_STOP\n", "META_STOP\nCOVARIANCE_START\n"), "icrf", "COVARIANCE_START has no COVARIANCE_STOP"),
     (("0 0.2 0 0 -5e-5 0\n2027", "0 1e308 0 0 -5e-5 0\n2027"), "icrf", "line 8: a number is not finite or too large"),
     (("META_STOP", "USEABLE_START_TIME = noon\nMETA_STOP"), "icrf", 'line 8: USEABLE_START_TIME is "noon"'),
+    (("META_STOP", "USEABLE_START_TIME = 2027-04-21\nUSEABLE_STOP_TIME = 2027-04-20\nMETA_STOP"), "icrf",
+     "line 9: USEABLE_STOP_TIME 2027-04-20 is before USEABLE_START_TIME 2027-04-21; swap them"),
 ])  # fmt: skip
 def test_messages_that_cannot_be_read_are_refused_with_their_line(
     change: tuple[str, str], frame: str, words: str, tmp_path: Path

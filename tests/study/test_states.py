@@ -1,5 +1,8 @@
 """What a file of states is, in which axes and about which centre they are, and what they stand for."""
 
+import bz2
+import gzip
+import lzma
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +47,8 @@ KINDS: list[tuple[bytes, FileKind | None]] = [
     (b"solid".ljust(80) + (1).to_bytes(4, "little") + bytes(50), FileKind.STL),
     (b'{"states": []}', FileKind.JSON),
     (b"PK\x03\x04....", FileKind.ARCHIVE),
+    *((one.compress(b"CCSDS_OEM_VERS = 2.0\n"), FileKind.ARCHIVE) for one in (bz2, gzip, lzma)),
+    (lzma.compress(b"CCSDS_OEM_VERS = 2.0\n", format=lzma.FORMAT_ALONE), FileKind.ARCHIVE),
     (f"{TITLES}\n0,0,200,0,0,0,0\n".encode("utf-16"), FileKind.UTF16),
     (f"{TITLES}\n0,0,200,0,0,0,0\n".encode(), None),
     (b"4 4\n1 0.1 0.2 0.3\n", None),
