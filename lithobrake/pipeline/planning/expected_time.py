@@ -37,7 +37,7 @@ Span = tuple[float, float]
 # A common step of a landing: of the bed, of each grain [s]; and of each grain of a bed that settles, which is looked at
 # more often.
 LANDING_STEP, LANDING_GRAIN = 3.5e-5, 5.0e-7
-SETTLING_GRAIN = 1.15e-6
+SETTLING_GRAIN = 8.0e-7
 # Contacts at steps of their own: for each grain that moves and each duration of the shortest contact, at no steps a
 # contact and for each [s]. Where what is slower than a share of the lander is held, so many move for each grain that
 # is too near to be held, over the share.

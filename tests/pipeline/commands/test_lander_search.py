@@ -78,7 +78,5 @@ def test_an_orbiter_below_the_ground_and_images_that_show_nothing_are_refused(
     camera = Imager(np.radians(5.5), np.radians(5.5) / 1020)
     with pytest.raises(ValueError, match=r"row 1: the orbiter is .* m below the ground; allowed: above it"):
         search_lander(journeys, images(tmp_path, TITLES + "now,0.003,0,0,1,0,0\n"), camera, size=1.0)
-    with pytest.raises(
-        ValueError, match=r"none of the 12 images of .* shows a place of rest: too dark"
-    ):
+    with pytest.raises(ValueError, match=r"none of the 12 images of .* shows a place of rest: too dark"):
         search_lander(journeys, around(tmp_path, 1e7), camera, size=0.1)
