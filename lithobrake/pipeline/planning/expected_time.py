@@ -52,7 +52,7 @@ FACETS, TABLE, FLIGHT, EXACT_FLIGHT, JOURNEY, EXACT_JOURNEY = 1920, 10.0, 2.0e-4
 REPORT_SECONDS = 15.0  # s: fits, scores, samples, summary and page
 # An estimate and the time that it then took differ by these factors, either way; that of touchdowns by the second, and
 # of those of journeys, over the beds of a study, by the third.
-SPREAD, SPREAD_OF_TOUCHDOWNS, SPREAD_OF_JOURNEYS = 1.6, 3.0, 2.0
+SPREAD, SPREAD_OF_TOUCHDOWNS, SPREAD_OF_JOURNEYS = 2.0, 3.0, 2.0
 # So many runs of a study tell how long the others take, to this factor at best.
 RUNS_THAT_TELL, SPREAD_OF_RUNS = 5, 1.15
 BUSY = 0.7  # of the cores: a load above this is other work
