@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from lithobrake.files.atomic import make_folder, write_whole
 from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot
 from lithobrake.report.figures.option_figures import DifferenceRow, difference_figure
-from lithobrake.report.figures.site_figures import agreement_figure, sites_figure
+from lithobrake.report.figures.site_figures import agreement_figure, drawn_and_flat, sites_figure
 from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.pages.html import data_files, page, picture_files
 from lithobrake.report.pages.study_page import study_content
@@ -155,7 +155,8 @@ def _settings(comparison: StudyComparison) -> PageTable:
 
 def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
     """Write index.html and its figures into a folder, which is made; returns the page."""
-    first = Plot("sites", "Sites", mapped.caption(site_map), lambda: sites_figure(site_map))
+    words = mapped.caption(site_map) + mapped.everywhere(drawn_and_flat(site_map)[1])
+    first = Plot("sites", "Sites", words, lambda: sites_figure(site_map))
     sections = [
         PageSection("Sites", tables=[_best(site_map), _site_table(site_map, site_map.cells, "All sites")]),
         *([_of_agreement(site_map)] if site_map.agreement else []),

@@ -128,6 +128,15 @@ def caption(found: SiteMap) -> str:
     )
 
 
+def everywhere(flat: list[tuple[str, float]]) -> str:
+    """The numbers that are the same at every site, as sentences behind a caption; titles end with their unit."""
+    sentences = []
+    for title, value in flat:
+        name, _, unit = title.rstrip("]").partition(" [")
+        sentences.append(f" {name[0].upper()}{name[1:]}: {value:.3g} {unit} at every site.")
+    return "".join(sentences)
+
+
 def agreement_caption(found: SiteMap) -> str:
     """The figure of emulator and landings."""
     return (

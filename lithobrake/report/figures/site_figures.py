@@ -23,6 +23,8 @@ COLUMNS = 2
 # Points on each side of a site, which the projection bends.
 SIDE = 12
 GOOD, BAD, GROUND, SUNLIGHT = "viridis", "magma_r", "cividis", "cividis"
+# Numbers of all sites within this part of each other make no map.
+LEAST_CONTRAST = 0.01
 # In inches: a map with its title, its colour bar, what stands between them, and the margins.
 WIDE, HIGH, GAP, FOOT = 4.55, 2.1, 0.12, 0.5
 
@@ -62,6 +64,22 @@ def sheets(site_map: SiteMap) -> list[SiteSheet]:
     ]
 
 
+def drawn_and_flat(site_map: SiteMap) -> tuple[list[SiteSheet], list[tuple[str, float]]]:
+    """The maps that show something, and title and value of those that have one number everywhere.
+
+    The first one, the fraction at rest, is always drawn.
+    """
+    drawn, flat = [], []
+    for number, sheet in enumerate(sheets(site_map)):
+        values = np.array([sheet.read(site) for site in site_map.cells])
+        values = values[np.isfinite(values)]
+        if number > 0 and len(values) > 0 and np.ptp(values) < LEAST_CONTRAST * max(np.abs(values).max(), 1.0):
+            flat.append((sheet.title, float(values.mean())))
+        else:
+            drawn.append(sheet)
+    return drawn, flat
+
+
 def _of_ends(read: Callable[[SiteEnds], float]) -> Callable[[SiteCell], float]:
     return lambda site: math.nan if site.ends is None else read(site.ends)
 
@@ -87,7 +105,7 @@ def sites_figure(site_map: SiteMap) -> Figure:
 
     Sites that cannot be told from the best are framed, those that are not answered hatched.
     """
-    drawn = sheets(site_map)
+    drawn, _ = drawn_and_flat(site_map)
     rows = -(-len(drawn) // COLUMNS)
     width, height = COLUMNS * WIDE + 0.1, rows * (HIGH + GAP) + FOOT
     figure = Figure(figsize=(width, height))
@@ -100,7 +118,7 @@ def sites_figure(site_map: SiteMap) -> Figure:
         bar = figure.add_axes(((left + WIDE - 0.6) / width, (bottom + 0.3) / height, 0.1 / width, 1.35 / height))
         scale: Any = figure.colorbar(colours, cax=bar)
         scale.outline.set_visible(False)
-        bar.tick_params(labelsize=7.0, length=2.0)
+        bar.tick_params(labelsize=8.0, length=2.0)
     _legend(figure, site_map, 0.1 / height)
     return figure
 

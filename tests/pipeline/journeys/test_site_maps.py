@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -32,9 +33,11 @@ from lithobrake.pipeline.site_grid import (
     site_arrivals,
     site_cells,
 )
+from lithobrake.report.figures.site_figures import drawn_and_flat
 from lithobrake.results import StudyResults
 from lithobrake.results.site_results import SiteMap
 from lithobrake.results.study_files import json_values, results_in
+from lithobrake.statements.sites import everywhere
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.number_words import LEVEL
 
@@ -257,3 +260,15 @@ def test_a_map_that_is_there_is_not_replaced(tmp_path: Path) -> None:
     assert result.exit_code == 2
     assert "sites.csv exists" in result.stderr
     assert there.read_text(encoding="utf-8") == "mine"
+
+
+def test_a_number_that_is_the_same_at_every_site_is_a_sentence_and_no_map(site_map: SiteMap) -> None:
+    """Sunlight of half a day everywhere; a slope that differs is drawn."""
+    half, some = (replace(site_map.cells[0].slope_deg, mean=value) for value in (0.5, 0.4))
+    cells = [replace(cell, light={"sun": half}) for cell in site_map.cells]
+    drawn, flat = drawn_and_flat(replace(site_map, cells=cells))
+    assert flat == [("sunlight [% of a day]", 50.0)]
+    assert everywhere(flat) == " Sunlight: 50 % of a day at every site."
+    assert "slope against gravity [deg]" in [sheet.title for sheet in drawn]
+    cells[0] = replace(cells[0], light={"sun": some})
+    assert drawn_and_flat(replace(site_map, cells=cells))[1] == []
