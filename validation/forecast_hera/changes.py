@@ -38,8 +38,9 @@ def bed_counts(of: Sample) -> np.ndarray:
 
 
 def figures(of: Sample, counts: np.ndarray, sides: tuple[str, ...]) -> np.ndarray:
-    """Fraction at rest, then of those at rest: median time [s], median distance [m], fraction on a broad side, and mean
-    place [m], [7]; counts: of each lander, [count].
+    """Fraction at rest, then of those at rest: median time [s], fraction on a broad side, mean place [m], [6].
+
+    counts: of each lander, [count].
     """
     size = int(of.branch.max()) + 1
     sums = np.bincount(of.branch, of.weight, minlength=size)
@@ -49,10 +50,10 @@ def figures(of: Sample, counts: np.ndarray, sides: tuple[str, ...]) -> np.ndarra
     weight = of.weight * counts * share[of.branch]
     rests = of.column("end") == "at_rest"
     resting, total = weight[rests], weight[rests].sum()
-    medians = [quantiles(of.column(name)[rests], resting)[MEDIAN] for name in ("time_s", "distance")]
+    time = quantiles(of.column("time_s")[rests], resting)[MEDIAN]
     side = resting[np.isin(of.column("face")[rests], sides)].sum() / total
     place = [resting @ of.column(f"position_{axis}")[rests] / total for axis in "xyz"]
-    return np.array([total / weight.sum(), *medians, side, *place])
+    return np.array([total / weight.sum(), time, side, *place])
 
 
 def change(before: Sequence[Row], after: Sequence[Row], lander: str) -> dict[str, dict[str, float]]:
@@ -65,14 +66,18 @@ def change(before: Sequence[Row], after: Sequence[Row], lander: str) -> dict[str
     one = np.ones(len(old.rows))
     found = figures(new, one, sides) - figures(old, one, sides)
     draws = np.array([figures(new, drawn, sides) - figures(old, drawn, sides) for drawn in bed_counts(old)])
-    length = float(np.linalg.norm(found[4:]))
-    along = draws[:, 4:] @ (found[4:] / length) if length > 0.0 else np.zeros(RESAMPLES)
+    length = float(np.linalg.norm(found[3:]))
+    along = draws[:, 3:] @ (found[3:] / length) if length > 0.0 else np.zeros(RESAMPLES)
     columns = {
-        "at_rest": (found[0], draws[:, 0]), "time_s": (found[1], draws[:, 1]), "distance": (found[2], draws[:, 2]),
-        "broad_side": (found[3], draws[:, 3]), "shift_m": (length, along),
+        "at_rest": (found[0], draws[:, 0]), "time_s": (found[1], draws[:, 1]),
+        "broad_side": (found[2], draws[:, 2]), "shift_m": (length, along),
     }  # fmt: skip
     return {
-        name: {"value": float(value), "lower": float(np.quantile(drawn, 0.05)), "upper": float(np.quantile(drawn, 0.95))}
+        name: {
+            "value": float(value),
+            "lower": float(np.quantile(drawn, 0.05)),
+            "upper": float(np.quantile(drawn, 0.95)),
+        }
         for name, (value, drawn) in columns.items()
     }
 

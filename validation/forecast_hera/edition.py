@@ -13,7 +13,6 @@ import datetime
 import os
 import shutil
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -96,7 +95,8 @@ def landers_of(folder: Path) -> tuple[list[Row], tuple[Measurement, ...], dict[s
         )
     runs = read_document(folder / RUNS)
     digests = read_document(folder / FORECAST, {}).get("sha256") or {
-        "studies": runs["studies_sha256"], "branches": digest(*(HERE / one for one in SCRIPTS), Path(hard_ground.__file__)),
+        "studies": runs["studies_sha256"],
+        "branches": digest(*(HERE / one for one in SCRIPTS), Path(hard_ground.__file__)),
         "code": runs["code_sha256"], "results": digest(folder / TABLE),
     }  # fmt: skip
     # Laws of the inputs are read from the studies, and must be those that the landers drew.

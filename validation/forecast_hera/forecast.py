@@ -70,9 +70,7 @@ def run_part(branch: Branch, ground: str, count: int, work: Path, workers: int |
     return rows, {**cost, "from_nothing": is_new, "date": time.strftime("%Y-%m-%d"), "load": os.getloadavg()[0]}
 
 
-def run_all(
-    work: Path, workers: int | None, measurements: Sequence[Measurement] = ()
-) -> tuple[list[Row], list[Row]]:
+def run_all(work: Path, workers: int | None, measurements: Sequence[Measurement] = ()) -> tuple[list[Row], list[Row]]:
     """The landers of all branches on both grounds, and what each study cost; the costs stay beside the studies."""
     chosen = {lander: simulated_branches(lander, measurements) for lander in LANDERS}
     parts = [(branch, ground) for lander in LANDERS for ground in COUNTS for branch in chosen[lander]]

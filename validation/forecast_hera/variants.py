@@ -97,7 +97,9 @@ def main() -> None:
         shape = Shape.read(options.shape)
         changes[MESH] = mesh_changes(shape, options.work)
         shapes = {"shape": options.shape.name, "shape_sha256": digest(options.shape), "volume_m3": shape.volume}
-    forecast = [row for row in read_rows(FIRST_EDITION / TABLE, KINDS) if (row["branch"], row["ground"]) == (BRANCH, "soil")]
+    forecast = [
+        row for row in read_rows(FIRST_EDITION / TABLE, KINDS) if (row["branch"], row["ground"]) == (BRANCH, "soil")
+    ]
     rows, costs = [{"variant": FORECAST_ROWS, **row} for row in forecast], {}
     for (variant, change), lander in product(changes.items(), LANDERS):
         (branch,) = (one for one in branches(lander) if one.name == BRANCH)

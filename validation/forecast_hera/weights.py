@@ -139,7 +139,8 @@ def refuse_few(effective: dict[str, float], lander: str) -> None:
     """Raise ValueError where the landers on soil or hard ground stand for too few."""
     for ground, number in effective.items():
         if number < FEWEST:
+            words = "soil" if ground == "soil" else "hard ground"
             raise ValueError(
-                f"the landers of {lander.capitalize()} on {'soil' if ground == 'soil' else 'hard ground'} stand for {number:.3g} even "
-                f"ones under the measurements; allowed: at least {FEWEST:g}; {REMEDY}"
+                f"the landers of {lander.capitalize()} on {words} stand for {number:.3g} even ones under the "
+                f"measurements; allowed: at least {FEWEST:g}; {REMEDY}"
             )

@@ -40,7 +40,6 @@ CONTRADICTIONS = (
 )
 DIFFERENCES = {
     "at_rest": ("at rest [percentage points]", 100.0), "time_s": ("median time to rest [min]", 1.0 / 60.0),
-    "distance": ("median distance from the aim point [m]", 1.0),
     "broad_side": ("on a broad side [percentage points]", 100.0), "shift_m": ("shift of the mean place [m]", 1.0),
 }  # fmt: skip
 
@@ -70,7 +69,9 @@ def chances_table(landers: Answers) -> str:
     soil, hard = ([landers[name][ground] for name in landers] for ground in GROUNDS)
     rows = [["**at rest on Dimorphos**", *(f"**{percent(of['ends']['at_rest'])}**" for of in soil)]]
     rows += [["at rest, if the ground were hard", *(percent(of["ends"]["at_rest"]) for of in hard)]]
-    rows += [[END_WORDS[end], *(percent(of["ends"][end]) for of in soil)] for end in ("partner", "escaped", "under_way")]
+    others = ("partner", "escaped", "under_way")
+    shares = ("; ".join(f"{100 * of['ends'][end]['share']:.0f} %" for end in others) for of in soil)
+    rows += [["; ".join(END_WORDS[end] for end in others), *shares]]
     for key, words, size in (
         ("time_s", "time from the first contact to rest [min]", 60.0),
         ("contacts", "contacts until rest", 1.0),
@@ -126,7 +127,8 @@ def changes_table(found: Sequence[tuple[str, Row]], first: str) -> str:
     """What each measurement changed alone; first: words of the first column."""
     rows = []
     for date, one in found:
-        said = [date, one["lander"].capitalize(), one["measurement"], plain(one["effective"]) if "effective" in one else ""]
+        number = f"{one['effective']:.0f}" if "effective" in one else ""
+        said = [date, one["lander"].capitalize(), one["measurement"], number]
         if "note" in one:
             rows.append([*said, one["note"], *[""] * (len(DIFFERENCES) - 1)])
         else:
@@ -161,25 +163,31 @@ def measured_part(found: Sequence[tuple[str, Answers]]) -> str:
 def quantities_table() -> str:
     rows = []
     for name, of in QUANTITIES.items():
-        allowed = ", ".join(of.names) if of.names else f"{of.lower:g} to {of.upper:g}"
-        fresh = "fresh landers" if of.key and of.column is None else "weights" if of.key or of.names else "recorded only"
+        allowed = (
+            ", ".join(of.names) if of.names else f"{of.lower:g} to {of.upper:g}".replace("e+0", "e").replace("e+", "e")
+        )
+        fresh = (
+            "fresh landers" if of.key and of.column is None else "weights" if of.key or of.names else "recorded only"
+        )
         rows.append([f"`{name}`", of.words, of.unit, allowed, "yes" if of.of_lander else "", fresh])
     return table(("quantity", "what it is", "unit", "allowed values or weights", "needs lander", "applied by"), rows)
 
 
 def draw_places(rows: dict[str, list[Row]], landers: Answers, path: Path) -> None:
     """Places of rest on soil and the smallest region with half of them, a panel for each lander (equal area)."""
-    with figure(path, 1, len(landers), (11.0, 3.5), sharey=True) as (_, axes):
+    with figure(path, 1, len(landers), (11.0, 3.1), sharey=True) as (_, axes):
         for ax, (name, of) in zip(axes, landers.items(), strict=True):
-            for line in of["soil"]["regions"][0]["outlines"]:
+            for number, line in enumerate(of["soil"]["regions"][0]["outlines"]):
                 latitude, longitude = np.array(line).T
                 # A line that crosses the date line is not drawn back over the whole map.
                 longitude[1:][np.abs(np.diff(longitude)) > 180.0] = np.nan
-                ax.plot(longitude, np.sin(np.radians(latitude)), color=INK, lw=1.6, label="half of them" if line is of["soil"]["regions"][0]["outlines"][0] else None)
+                label = None if number else "smallest region with half of them"
+                ax.plot(longitude, np.sin(np.radians(latitude)), color=INK, lw=1.6, label=label)
             own = [row for row in rows[name] if row["end"] == "at_rest"]
             weight = np.array([float(row["weight"]) for row in own])
             place = np.array([[float(row[f"{one}_deg"]) for one in ("longitude", "latitude")] for row in own]).T
-            ax.scatter(place[0], np.sin(np.radians(place[1])), s=9.0 * weight / weight.mean(), color=SOIL, lw=0, label="places of rest")
+            size = 9.0 * weight / weight.mean()
+            ax.scatter(place[0], np.sin(np.radians(place[1])), s=size, color=SOIL, lw=0, label="places of rest")
             ax.plot([0.0, 180.0, -180.0], [0.0] * 3, "+", ms=11, mew=1.8, color=TRAINING, label="aim points")
             ticks = np.array([-90, -45, -20, 0, 20, 45, 90])
             ax.set_yticks(np.sin(np.radians(ticks)), [str(one) for one in ticks])
