@@ -181,7 +181,8 @@ def is_weighted(rows: list[Row]) -> bool:
     return any("factor" in row for row in rows)
 
 
-def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
+def answer(rows: list[Row], lander: str, ground: str, axes: np.ndarray | None = None) -> dict[str, Any]:
+    """All answers of a lander on a ground; axes: semi-axes of Dimorphos [m], [3], where not the assumed ones."""
     of = sample(rows, lander, ground)
     mean, draws = shares(of, "end", branch_weights(of, lander, at_rest=False))
     resting = of.where(of.column("end") == "at_rest")
@@ -194,7 +195,7 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
         "touched_down": touched_down(of),
         "ends": {end: estimate(mean[k], draws[:, k]) for k, end in enumerate(ENDS)},
         "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance", "first_speed_ratio")},
-        "regions": regions(resting, semi_axes()) if ground == "soil" else [],
+        "regions": regions(resting, semi_axes() if axes is None else axes) if ground == "soil" else [],
         "by_branch": by_branch(of, lander),
         "what_decides": what_decides(of) if ground == "soil" and not is_weighted(rows) else [],
         "scored": scored,

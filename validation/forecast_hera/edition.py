@@ -13,6 +13,7 @@ import datetime
 import os
 import shutil
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ from branches import LANDERS, SCENARIOS
 from changes import changes
 from harness import Row, command_line, origin, read_document, read_rows, write_document
 from landers import KINDS, RUNS, TABLE
+from measured_branches import measured_branches
 from measurements import DRAWN, Measurement, read_measurements
 from samples import GROUNDS, Sample, sample
 from weights import effective_numbers, refuse_few, weighted
@@ -70,11 +72,17 @@ def make_edition(file: Path, date: datetime.date, landers: Path = FIRST_EDITION,
         ],
         "effective": effective,
         "changes": [row for lander in LANDERS for row in changes(assumed, lander, measurements)],
-        "landers": {name: {ground: answer(own[name], name, ground) for ground in GROUNDS} for name in LANDERS},
+        "landers": {name: answers(own[name], name, measurements) for name in LANDERS},
         **origin("validation/forecast_hera/edition.py MEASUREMENTS"),
     }  # fmt: skip
     write_edition(target, document, file, landers, own)
     return target
+
+
+def answers(rows: list[Row], lander: str, measurements: Iterable[Measurement]) -> dict[str, Any]:
+    """The answers of a lander on each ground of the measured body."""
+    axes = 0.5 * np.array(measured_branches(lander, measurements)[0].tables(1)["site"]["extents"])
+    return {ground: answer(rows, lander, ground, axes) for ground in GROUNDS}
 
 
 def refuse_date(target: Path, folder: Path) -> None:
@@ -138,7 +146,8 @@ def write_predicted(folder: Path, rows: dict[str, list[Row]]) -> None:
         for ground in GROUNDS:
             of = sample(rows[lander], lander, ground)
             with (folder / f"{lander}_{ground}.csv").open("w", newline="", encoding="utf-8") as file:
-                writer = csv.DictWriter(file, ["weight", "bed", *SCORED, *(["face"] if ground == "soil" else [])])
+                columns = ["weight", "bed", *SCORED, *(["face"] if ground == "soil" else [])]
+                writer = csv.DictWriter(file, columns, lineterminator="\n")
                 writer.writeheader()
                 writer.writerows(predicted_rows(of, ground))
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from branches import AIMS, STUDY, Branch, branches
+from branches import AIMS, STUDY, Branch, branches, changed
 from descent import release
 from measurements import Measurement
 
@@ -78,6 +78,7 @@ def simulated_branches(lander: str, measurements: Iterable[Measurement]) -> tupl
 
 
 def to_measured_body(branch: Branch) -> Branch:
-    """A branch of ballistic descents, released toward the body of its own study."""
-    body = Site(StudySource.of_tables(branch.tables(1)).study).body
+    """A branch of ballistic descents, released toward the body of its own study as it turns with its orbit."""
+    tables = changed(branch.tables(1), {"site.rotation": None})
+    body = Site(StudySource.of_tables(tables).study).body
     return replace(branch, changes={**branch.changes, "delivery.release": release(body, AIMS[branch.aim])})

@@ -109,7 +109,7 @@ def density(table: Row, values: Floats) -> Floats:
 def _refuse_other_value(name: str, of: Quantity, p: float, q: float) -> None:
     if abs(p - q) > NEAR * q:
         raise ValueError(
-            f"{name} is {p / of.factor:g} {of.unit} in the measurements and {q / of.factor:g} {of.unit} for all "
+            f"{name} is {p / of.factor:g} {of.unit} in the measurements and {q / of.factor:g} for all "
             f"landers, more than {100 * NEAR:g} % away; {REMEDY}"
         )
 

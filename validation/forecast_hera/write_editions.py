@@ -156,7 +156,7 @@ def measured_part(found: Sequence[tuple[str, Answers]]) -> str:
         ("edition", "measurement", "published", "source"),
         [[date, one["words"], one["date"], one["source"]] for date, one in listed],
     )
-    changed = [(date, row) for date, document in found for row in document["changes"]] if listed else []
+    changed = [(date, row) for date, document in found for row in document.get("changes", [])]
     return f"{sources}\n\n{changes_table(changed, 'edition')}"
 
 
