@@ -88,6 +88,33 @@ def forecast(folder: Path, date: str) -> dict:
     return read_document(folder / date / "forecast.json")
 
 
+def test_an_edition_of_fresh_landers_keeps_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of the first edition stand for landers that were simulated with a mass; the answers are left out."""
+    import edition
+    from harness import read_document, write_document
+
+    monkeypatch.setattr(edition, "answers", lambda rows, lander, measurements: {})
+    monkeypatch.setattr(edition, "changes", lambda rows, lander, measurements: [])
+    fresh, file = tmp_path / "fresh", tmp_path / "m.toml"
+    fresh.mkdir()
+    file.write_text(MASS, encoding="utf-8")
+    for source, name in ((FIRST / "landers.csv", "landers.csv"), (file, "drawn.toml")):
+        shutil.copy(source, fresh / name)
+    digests = read_document(FIRST / "forecast.json")["sha256"]
+    write_document(fresh / "runs.json", {"studies_sha256": digests["studies"], "code_sha256": digests["code"]})
+    made = edition.make_edition(file, datetime.date(2027, 2, 1), fresh, tmp_path / "editions")
+    document = read_document(made / "forecast.json")
+    assert document["landers_of"] == "2027-02-01"
+    # They need no weights.
+    assert document["effective"]["milani"] == pytest.approx({"soil": 240.0, "hard": 400.0})
+    assert {"landers.csv", "runs.json", "drawn.toml", "measurements.toml"} <= {path.name for path in made.iterdir()}
+    assert "  landers.csv\n" in (made / "SHA256SUMS").read_text(encoding="utf-8")
+    # They cannot come from a mass that is known to 0.1 %.
+    (fresh / "drawn.toml").write_text(MASS.replace("0.25e9", "2.7e6"), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"a lander has dimorphos_mass .* kg, which it cannot have drawn .*; restore"):
+        edition.make_edition(file, datetime.date(2027, 2, 2), fresh, tmp_path / "editions")
+
+
 @pytest.mark.parametrize("edition", sorted(path.name for path in FIRST.parent.iterdir()))
 def test_an_edition_is_what_its_hashes_say(edition: str) -> None:
     folder = FIRST.parent / edition
@@ -154,6 +181,7 @@ def test_a_second_edition_differs_and_leaves_the_first_untouched(two_editions) -
         for words in (
             "mass of Dimorphos: 2.7e9 ± 0.25e9 kg",
             "rotation of Dimorphos: small libration 30 %, large libration 20 %, rolling 50 %",
+            "all together",
         )
     ]
     for row in second["changes"]:
@@ -212,6 +240,7 @@ def test_the_pages_show_all_editions_side_by_side(two_editions, tmp_path: Path, 
     assert page.count("| 2027-02-02 | Milani | mass of Dimorphos: 2.7e9 ± 0.25e9 kg | ") == 1
     front = (tmp_path / "forecast_hera.md").read_text(encoding="utf-8")
     assert "**Edition of 2027-02-02, made before" in front
+    assert "2 measurements replace assumptions" in " ".join(front.split())
     assert (tmp_path / "forecast_hera.png").stat().st_size > 10_000
 
 

@@ -15,6 +15,7 @@ from samples import FACES, Sample, sample
 from weights import effective_numbers, weighted
 
 RESAMPLES = 500
+TOGETHER = "all together"
 # A share of 90 % from so few landers has a standard error of 5 percentage points.
 FEWEST = 36.0
 MEDIAN = 2  # of the levels of answers.quantiles
@@ -83,27 +84,30 @@ def change(before: Sequence[Row], after: Sequence[Row], lander: str) -> dict[str
 
 
 def changes(rows: Sequence[Row], lander: str, measurements: Iterable[Measurement]) -> list[dict[str, Any]]:
-    """What each measurement that concerns a lander changed alone, of landers simulated without any.
+    """What each measurement that concerns a lander changed alone, and what all of several did together.
 
-    note: why there are no differences, where there are none.
+    rows: of landers simulated without any. note: why there are no differences, where there are none.
     """
-    found = []
+    own = [one for one in measurements if one.lander in ("", lander)]
     before = weighted(rows, lander, ())
-    for one in measurements:
-        if one.lander not in ("", lander):
-            continue
-        row: dict[str, Any] = {"measurement": one.words, "lander": lander}
-        if not one.of.key and one.weights is None:
-            found.append({**row, "note": "no input of the landings follows from it"})
-            continue
-        try:
-            after = weighted(rows, lander, (one,))
-        except ValueError as error:
-            found.append({**row, "note": str(error).partition(";")[0]})
-            continue
-        number = effective_numbers(after, lander)["soil"]
-        if number < FEWEST:
-            found.append({**row, "effective": number, "note": "the landers of the first edition stand for too few"})
-        else:
-            found.append({**row, "effective": number, **change(before, after, lander)})
+    found = [{"measurement": one.words, "lander": lander, **changed_by(rows, before, lander, [one])} for one in own]
+    used = [one for one in own if one.of.key or one.weights]
+    if len(used) > 1:
+        found.append({"measurement": TOGETHER, "lander": lander, **changed_by(rows, before, lander, used)})
     return found
+
+
+def changed_by(
+    rows: Sequence[Row], before: Sequence[Row], lander: str, measurements: Sequence[Measurement]
+) -> dict[str, Any]:
+    """Effective number of the landers under some measurements, and the differences that they make; or a note."""
+    if not any(one.of.key or one.weights for one in measurements):
+        return {"note": "no input of the landings follows from it"}
+    try:
+        after = weighted(rows, lander, measurements)
+    except ValueError as error:
+        return {"note": str(error).partition(";")[0]}
+    number = effective_numbers(after, lander)["soil"]
+    if number < FEWEST:
+        return {"effective": number, "note": "the landers of the first edition stand for too few"}
+    return {"effective": number, **change(before, after, lander)}

@@ -12,7 +12,7 @@ import numpy as np
 from branches import Branch
 from harness import Row
 from measured_branches import BALLISTIC, DELIVERY, measured_branches
-from measurements import QUANTITIES, Measurement, Quantity
+from measurements import DRAWN, QUANTITIES, Measurement, Quantity
 from samples import Sample, sample
 
 from lithobrake.study.quantity import Uncertain
@@ -70,7 +70,13 @@ def branch_factors(rows: Sequence[Row], new: Branch, old: Branch) -> Floats:
         values = np.array([row[of.column] for row in rows])
         # One that missed drew a value that had no part in it: it stands for itself.
         known = is_met & np.isfinite(values)
-        factors[known] *= density(p, values[known]) / density(q, values[known])
+        drawn = density(q, values[known])
+        if not drawn.all():
+            raise ValueError(
+                f"a lander has {name} {values[known][drawn == 0.0][0] / of.factor:g} {of.unit}, which it cannot have "
+                f"drawn from its distribution; restore {DRAWN} beside the landers"
+            )
+        factors[known] *= density(p, values[known]) / drawn
     return factors
 
 
@@ -138,7 +144,7 @@ def effective_numbers(rows: Sequence[Row], lander: str) -> dict[str, float]:
 def refuse_few(effective: dict[str, float], lander: str) -> None:
     """Raise ValueError where the landers on soil or hard ground stand for too few."""
     for ground, number in effective.items():
-        if number < FEWEST:
+        if not number >= FEWEST:
             words = "soil" if ground == "soil" else "hard ground"
             raise ValueError(
                 f"the landers of {lander.capitalize()} on {words} stand for {number:.3g} even ones under the "

@@ -144,7 +144,7 @@ def expected_changes() -> list[tuple[str, Row]]:
     given = tomllib.loads((HERE / EXPECTED).read_text(encoding="utf-8"))["measurement"]
     measurements = [measurement_of(one, f"{EXPECTED}, measurement {number}") for number, one in enumerate(given, 1)]
     rows = read_rows(FIRST_EDITION / TABLE, KINDS)
-    return [("", row) for name in LANDERS for row in changes(rows, name, measurements)]
+    return [("", row) for name in LANDERS for one in measurements for row in changes(rows, name, [one])]
 
 
 def measured_part(found: Sequence[tuple[str, Answers]]) -> str:
@@ -158,6 +158,15 @@ def measured_part(found: Sequence[tuple[str, Answers]]) -> str:
     )
     changed = [(date, row) for date, document in found for row in document.get("changes", [])]
     return f"{sources}\n\n{changes_table(changed, 'edition')}"
+
+
+def basis(document: Answers) -> str:
+    """What an edition stands on, in a sentence."""
+    count = len(document.get("measurements", []))
+    if not count:
+        return "No measurement by Hera is used yet."
+    words = "One measurement replaces an assumption" if count == 1 else f"{count} measurements replace assumptions"
+    return f"{words} ([which](forecast_hera_editions.md#measurements-and-what-each-changed))."
 
 
 def quantities_table() -> str:
@@ -211,7 +220,7 @@ def write(folder: Path, docs: Path) -> None:
     sums = {name: digest(folder / name / SUMS) for name, _ in found}
     write_page(
         "forecast_hera", docs, date=date, year=date[:4], chances=chances_table(landers), hash=sums[date],
-        contradictions=contradictions_table(landers), version=lithobrake.__version__,
+        contradictions=contradictions_table(landers), basis=basis(document), version=lithobrake.__version__,
     )  # fmt: skip
     hashes = table(("edition", "SHA-256 of its file SHA256SUMS"), [[name, f"`{one}`"] for name, one in sums.items()])
     write_page(
