@@ -386,6 +386,17 @@ def test_a_change_of_weights_is_that_of_its_mixture() -> None:
     assert all(one == {"value": 0.0, "lower": 0.0, "upper": 0.0} for one in same.values())
 
 
+def test_what_no_input_follows_from_is_recorded_only() -> None:
+    from changes import changes
+    from write_editions import basis
+
+    one = measured("thermal_inertia", value=300.0, error=50.0, unit="J m-2 K-1 s-1/2")
+    (row,) = changes(landers(mass_kg=[3e9]), "juventas", [one])
+    assert row["note"] == "no input of the landings follows from it"
+    assert basis({"measurements": [{"used": one.is_used}]}) == "No measurement by Hera is used yet."
+    assert basis({"measurements": [{"used": mass(3e9, 1e8).is_used}]}).startswith("One measurement replaces")
+
+
 def test_broad_sides_are_those_across_the_shortest_edge() -> None:
     from changes import broad_sides
 
@@ -539,3 +550,20 @@ def test_the_promised_score_of_the_first_edition_is_printed() -> None:
     other = subprocess.run([*command, "--edition", "2026-11-25"], capture_output=True, text=True)
     assert other.returncode == 1
     assert "--edition is 2026-11-25; allowed: 2026-11-26" in other.stderr
+
+
+def test_commands_refuse_in_one_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import edition
+    import forecast
+
+    (tmp_path / "m.toml").write_text(MASS.replace("kg", "t"), encoding="utf-8")
+    work = ["--work", str(tmp_path / "work")]
+    for module, given, words in (
+        (forecast, [*work, "--out", str(FIRST)], "allowed: a folder elsewhere, as editions are never edited"),
+        (forecast, [*work, "--measurements", str(tmp_path / "m.toml")], 'dimorphos_mass has unit "t"; allowed: kg'),
+        (edition, [str(tmp_path / "m.toml"), "--editions", str(tmp_path / "editions")], "has unit"),
+    ):
+        monkeypatch.setattr(sys, "argv", ["command", *given])
+        with pytest.raises(SystemExit, match=words):
+            module.main()
+    assert not (tmp_path / "editions").exists()

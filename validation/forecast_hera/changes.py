@@ -91,7 +91,7 @@ def changes(rows: Sequence[Row], lander: str, measurements: Iterable[Measurement
     own = [one for one in measurements if one.lander in ("", lander)]
     before = weighted(rows, lander, ())
     found = [{"measurement": one.words, "lander": lander, **changed_by(rows, before, lander, [one])} for one in own]
-    used = [one for one in own if one.of.key or one.weights]
+    used = [one for one in own if one.is_used]
     if len(used) > 1:
         found.append({"measurement": TOGETHER, "lander": lander, **changed_by(rows, before, lander, used)})
     return found
@@ -101,7 +101,7 @@ def changed_by(
     rows: Sequence[Row], before: Sequence[Row], lander: str, measurements: Sequence[Measurement]
 ) -> dict[str, Any]:
     """Effective number of the landers under some measurements, and the differences that they make; or a note."""
-    if not any(one.of.key or one.weights for one in measurements):
+    if not any(one.is_used for one in measurements):
         return {"note": "no input of the landings follows from it"}
     try:
         after = weighted(rows, lander, measurements)

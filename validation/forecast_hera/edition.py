@@ -68,7 +68,8 @@ def make_edition(file: Path, date: datetime.date, landers: Path = FIRST_EDITION,
         "made": date.isoformat(), "landers_of": landers.name if is_kept(landers, folder) else date.isoformat(),
         "sha256": digests | {"measurements": digest(file), "weights": digest(*(HERE / one for one in WEIGHERS))},
         "measurements": [
-            {"words": one.words, "date": one.date.isoformat(), "source": one.source} for one in measurements
+            {"words": one.words, "date": one.date.isoformat(), "source": one.source, "used": one.is_used}
+            for one in measurements
         ],
         "effective": effective,
         "changes": [row for lander in LANDERS for row in changes(assumed, lander, measurements)],

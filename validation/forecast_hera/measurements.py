@@ -96,6 +96,11 @@ class Measurement:
         return QUANTITIES[self.quantity]
 
     @property
+    def is_used(self) -> bool:
+        """Whether an input of the landings follows from it."""
+        return bool(self.of.key) or self.weights is not None
+
+    @property
     def law(self) -> dict[str, Any]:
         """The normal law within the allowed range, as a study file has it."""
         factor = self.of.factor

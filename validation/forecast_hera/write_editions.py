@@ -162,7 +162,7 @@ def measured_part(found: Sequence[tuple[str, Answers]]) -> str:
 
 def basis(document: Answers) -> str:
     """What an edition stands on, in a sentence."""
-    count = len(document.get("measurements", []))
+    count = sum(one["used"] for one in document.get("measurements", []))
     if not count:
         return "No measurement by Hera is used yet."
     words = "One measurement replaces an assumption" if count == 1 else f"{count} measurements replace assumptions"
