@@ -193,6 +193,9 @@ def test_an_edition_is_not_written_over(two_editions) -> None:
     from edition import make_edition
 
     folder, _ = two_editions
+    # One that was cut short is none.
+    (folder / "2027-03-01.part").mkdir()
+    (folder / "2027-03-01.part" / "forecast.json").write_text("", encoding="utf-8")
     for date in (datetime.date(2027, 2, 2), datetime.date(2027, 1, 31)):
         with pytest.raises(
             ValueError, match=r"not be later than that of 2027-02-02, and editions are never edited; give"

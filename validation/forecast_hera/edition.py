@@ -47,7 +47,7 @@ SCORED = {
 
 def editions(folder: Path = EDITIONS) -> list[Path]:
     """The folders of all editions, in the order of their dates."""
-    return sorted(one.parent for one in folder.glob(f"*/{FORECAST}"))
+    return sorted(one.parent for one in folder.glob(f"????-??-??/{FORECAST}"))
 
 
 def make_edition(file: Path, date: datetime.date, landers: Path = FIRST_EDITION, folder: Path = EDITIONS) -> Path:
