@@ -308,7 +308,7 @@ def test_what_is_there_by_the_same_code_is_kept_with_what_it_cost(
 
     monkeypatch.setattr(forecast, "follow", follow)
     monkeypatch.setattr(forecast, "LANDERS", ("juventas",))
-    monkeypatch.setattr(forecast, "branches", lambda lander: three)
+    monkeypatch.setattr(forecast, "simulated_branches", lambda lander, measurements: three)
     monkeypatch.setattr(forecast, "COUNTS", {"soil": 240})
     (tmp_path / folder_name(three[1], "soil")).mkdir()
     rows, costs = forecast.run_all(tmp_path, 1)

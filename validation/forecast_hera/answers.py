@@ -1,8 +1,8 @@
 """The forecast from the landers of all branches: chances, numbers, places, what decides, and what is scored.
 
-    python validation/forecast_hera/answers.py [--out FOLDER]
+    python validation/forecast_hera/answers.py --out FOLDER
 
-Reads landers.csv and runs.json, writes forecast.json; the last step but one of forecast.py.
+Reads landers.csv and runs.json of the folder, writes forecast.json; the last step but one of forecast.py.
 
 Shares of a branch have a Dirichlet posterior: counts, divided by their design effect, plus one lander spread evenly
 over all ends (Perks' prior), so nothing is impossible. A lander's shares are those of its branches times their weights.
@@ -25,13 +25,15 @@ from branches import LANDERS, SCENARIOS, branches
 from harness import Row, command_line, origin, read_document, read_rows, write_document
 from landers import FIRST, KINDS, RUNS, TABLE
 from places import regions, semi_axes
-from samples import BINS, CELLS, ENDS, FACES, GROUNDS, Sample, categories, sample, those_down
+from samples import BINS, CELLS, ENDS, FACES, GROUNDS, Sample, categories, effective_counts, sample, those_down
 from scipy.stats import rankdata
 
 import lithobrake
 from lithobrake.touchdown.touchdown_model import touchdown_version
 
 HERE = Path(__file__).parent
+# The forecast that stands on the assumptions alone.
+FIRST_EDITION = HERE / "editions" / "2026-11-26"
 FORECAST = "forecast.json"
 # What decides, beside the package, how the landers of a study file come down.
 SCRIPTS = ("branches.py", "descent.py", "grounds.py", "landers.py")
@@ -52,7 +54,7 @@ def shares(of: Sample, name: str, weights: np.ndarray) -> tuple[np.ndarray, np.n
     mean, draws = np.zeros(count), np.zeros((DRAWS, count))
     for number, weight in enumerate(weights):
         here = (of.branch == number) & (category >= 0)
-        counts = np.bincount(category[here], minlength=count) / design_effect(of, here)
+        counts = effective_counts(of.where(here), category[here], count) / design_effect(of, here)
         posterior = counts + 1.0 / count
         mean += weight * posterior / posterior.sum()
         draws += weight * random.dirichlet(posterior, DRAWS)
@@ -68,16 +70,13 @@ def design_effect(of: Sample, here: np.ndarray) -> float:
 
 def branch_weights(of: Sample, lander: str, at_rest: bool) -> np.ndarray:
     """Weights of the branches, adding up to 1; at_rest: given that the lander comes to rest."""
-    prior = np.array([one.weight for one in branches(lander)])
+    prior = np.bincount(of.branch, of.weight, minlength=len(branches(lander)))
     if at_rest:
-        rests = of.column("end") == "at_rest"
-        prior = prior * np.array(
-            [
-                (rests[of.branch == number].sum() + 0.25) / ((of.branch == number).sum() + 1.0)
-                for number in range(len(prior))
-            ]
-        )
-    prior[[not (of.branch == number).any() for number in range(len(prior))]] = 0.0
+        rests = (of.column("end") == "at_rest").astype(int)
+        for number in range(len(prior)):
+            here = of.branch == number
+            moving, resting = effective_counts(of.where(here), rests[here], 2)
+            prior[number] *= (resting + 0.25) / (moving + resting + 1.0)
     return prior / prior.sum()
 
 
@@ -164,21 +163,26 @@ def touched_down(of: Sample) -> dict[str, int]:
 
 
 def by_branch(of: Sample, lander: str) -> list[dict[str, Any]]:
-    found = []
+    found, weights = [], branch_weights(of, lander, at_rest=False)
     for number_, branch in enumerate(branches(lander)):
         only = np.zeros(len(branches(lander)))
         only[number_] = 1.0
-        if not (of.branch == number_).any():
+        if weights[number_] == 0.0:
             continue
         mean, draws = shares(of, "end", only)
         found.append({
-            "branch": branch.name, "weight": branch.weight, "landers": int((of.branch == number_).sum()),
+            "branch": branch.name, "weight": float(weights[number_]), "landers": int((of.branch == number_).sum()),
             **{end: estimate(mean[k], draws[:, k]) for k, end in enumerate(ENDS)},
         })  # fmt: skip
     return found
 
 
-def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
+def is_weighted(rows: list[Row]) -> bool:
+    return any("factor" in row for row in rows)
+
+
+def answer(rows: list[Row], lander: str, ground: str, axes: np.ndarray | None = None) -> dict[str, Any]:
+    """All answers of a lander on a ground; axes: semi-axes of Dimorphos [m], [3], where not the assumed ones."""
     of = sample(rows, lander, ground)
     mean, draws = shares(of, "end", branch_weights(of, lander, at_rest=False))
     resting = of.where(of.column("end") == "at_rest")
@@ -191,9 +195,9 @@ def answer(rows: list[Row], lander: str, ground: str) -> dict[str, Any]:
         "touched_down": touched_down(of),
         "ends": {end: estimate(mean[k], draws[:, k]) for k, end in enumerate(ENDS)},
         "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance", "first_speed_ratio")},
-        "regions": regions(resting, semi_axes()) if ground == "soil" else [],
+        "regions": regions(resting, semi_axes() if axes is None else axes) if ground == "soil" else [],
         "by_branch": by_branch(of, lander),
-        "what_decides": what_decides(of) if ground == "soil" else [],
+        "what_decides": what_decides(of) if ground == "soil" and not is_weighted(rows) else [],
         "scored": scored,
     }
 
@@ -234,7 +238,7 @@ def write_answers(out: Path) -> dict[str, Any]:
 
 
 def main() -> None:
-    write_answers(command_line(__doc__, out=HERE).parse_args().out)
+    write_answers(command_line(__doc__, out=Path).parse_args().out)
 
 
 if __name__ == "__main__":

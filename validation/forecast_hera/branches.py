@@ -30,6 +30,7 @@ ROTATIONS = {
     "large libration": {"yaw_deg": 20.0, "pitch_deg": 1.0, "roll_deg": 2.0},
     "rolling": {"yaw_deg": 30.0, "roll_deg": 60.0},
 }
+# Of a branch; a lander at least on each bed.
 FEWEST_BEDS, LANDERS_A_BED = 12, 3
 STUDY = dict[str, Any]
 
@@ -63,7 +64,7 @@ class Branch:
     def tables(self, landers: int) -> STUDY:
         """The tables of its study, with its part of so many landers of all branches, three on each bed."""
         tables = tomllib.loads((SCENARIOS / f"{self.lander}.toml").read_text(encoding="utf-8"))
-        count = round(self.weight * landers)
+        count = max(FEWEST_BEDS, round(self.weight * landers))
         changes = {
             **self.changes, "title": f"{tables['title']}: {self.name}", "seed": tables["seed"] + self.number,
             # Every answer is of simulated landings.

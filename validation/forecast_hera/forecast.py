@@ -1,29 +1,33 @@
 """The forecast of the landings of Juventas and Milani on Dimorphos, from nothing: one command.
 
-    python validation/forecast_hera/forecast.py --work FOLDER [--out FOLDER] [--workers N]
+    python validation/forecast_hera/forecast.py --work FOLDER [--out FOLDER] [--workers N] [--measurements FILE]
 
 Runs the study of every branch (branches.py) on soil, and on hard ground with a restitution drawn from 0 to 1, each in a
 folder of its own in --work. One that is there already, by the same code of the engine, is kept; one that was cut short
-goes on. Then writes to --out: landers.csv, a line for each lander; runs.json, what each study cost; forecast.json, the
-answers; and the page with its figures, which go to docs/ (and showcase/) where --out is this folder. Last it compares
-the forecast with the one that stood here before.
+goes on. Then writes to --out, WORK/forecast where it is not given: landers.csv, a line for each lander; runs.json, what
+each study cost; forecast.json, the answers; and the page with its figures. Last it compares the forecast with the first
+edition. With measurements their values stand in the studies in place of assumptions, and the answers and the page are
+left to the edition that is made of the landers (edition.py --landers).
 """
 
 import os
+import shutil
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from answers import FORECAST, HERE, digest, package_files, write_answers
-from branches import LANDERS, Branch, branches
+from answers import FIRST_EDITION, FORECAST, HERE, digest, package_files, write_answers
+from branches import LANDERS, SCENARIOS, Branch
 from compare import comparison
 from harness import Row, command_line, origin, read_document, write_document
 from landers import COUNTS, RUNS, TABLE, folder_name, follow, write_landers
-from write_page import DOCS, write
+from measured_branches import simulated_branches
+from measurements import DRAWN, Measurement, read_measurements
+from write_page import write
 
-import showcase
 from lithobrake.campaign import duration
 from lithobrake.pipeline.job import Silent
 
@@ -66,9 +70,10 @@ def run_part(branch: Branch, ground: str, count: int, work: Path, workers: int |
     return rows, {**cost, "from_nothing": is_new, "date": time.strftime("%Y-%m-%d"), "load": os.getloadavg()[0]}
 
 
-def run_all(work: Path, workers: int | None) -> tuple[list[Row], list[Row]]:
+def run_all(work: Path, workers: int | None, measurements: Sequence[Measurement] = ()) -> tuple[list[Row], list[Row]]:
     """The landers of all branches on both grounds, and what each study cost; the costs stay beside the studies."""
-    parts = [(branch, ground) for lander in LANDERS for ground in COUNTS for branch in branches(lander)]
+    chosen = {lander: simulated_branches(lander, measurements) for lander in LANDERS}
+    parts = [(branch, ground) for lander in LANDERS for ground in COUNTS for branch in chosen[lander]]
     path = work / RUNS
     costs: dict[str, Row] = read_document(path, {})
     landers, spent, fresh, left = [], 0.0, 0.0, sum(expected_cpu(*one) for one in parts)
@@ -97,21 +102,32 @@ def in_words(rows: list[Row], cost: Row | None) -> str:
 
 
 def main() -> None:
-    options = command_line(__doc__, work=Path, out=HERE, workers=0).parse_args()
-    before = read_document(HERE / FORECAST)
-    for folder in (options.work, options.out):
+    parser = command_line(__doc__, work=Path, workers=0)
+    for name in ("out", "measurements"):
+        parser.add_argument(f"--{name}", type=Path)
+    options = parser.parse_args()
+    out = options.out or options.work / "forecast"
+    if out.resolve() == HERE or FIRST_EDITION.parent in out.resolve().parents:
+        raise SystemExit(f"--out is {out}; allowed: a folder elsewhere, as editions are never edited; name another")
+    for folder in (options.work, out):
         folder.mkdir(parents=True, exist_ok=True)
-    landers, costs = run_all(options.work, options.workers or None)
-    write_landers(options.out / TABLE, landers)
+    try:
+        measurements = read_measurements(options.measurements) if options.measurements else ()
+    except ValueError as error:
+        raise SystemExit(str(error)) from error
+    landers, costs = run_all(options.work, options.workers or None, measurements)
+    write_landers(out / TABLE, landers)
     totals = {key: round(sum(one[key] for one in costs)) for key in ("cpu_s", "wall_s")}
-    made = {**totals, "code_sha256": digest(*package_files()), "studies": costs}
-    write_document(options.out / RUNS, origin("validation/forecast_hera/forecast.py --work FOLDER") | made)
-    after = write_answers(options.out)
-    is_kept = options.out.resolve() == HERE
-    write(options.out, DOCS if is_kept else options.out)
-    if is_kept:
-        showcase.keep(HERE, DOCS, showcase.FOLDER)
-    print("\n".join(comparison(before, after)))
+    studies = {name: digest(SCENARIOS / f"{name}.toml") for name in LANDERS}
+    made = {**totals, "code_sha256": digest(*package_files()), "studies_sha256": studies, "studies": costs}
+    write_document(out / RUNS, origin("validation/forecast_hera/forecast.py --work FOLDER") | made)
+    if measurements:
+        shutil.copy(options.measurements, out / DRAWN)
+        print(f"edition: python validation/forecast_hera/edition.py {options.measurements} --landers {out}")
+        return
+    after = write_answers(out)
+    write(out, out)
+    print("\n".join(comparison(read_document(FIRST_EDITION / FORECAST), after)))
 
 
 if __name__ == "__main__":

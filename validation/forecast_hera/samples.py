@@ -30,6 +30,11 @@ class Sample(NamedTuple):
         return np.array([row[name] for row in self.rows])
 
     @property
+    def factor(self) -> np.ndarray:
+        """Landers of its branch that each stands for; 1 where none was weighted (weights.py)."""
+        return np.array([row.get("factor", 1.0) for row in self.rows])
+
+    @property
     def beds(self) -> np.ndarray:
         """Bed of each, by a number that no other branch has."""
         return self.column("bed") + 1000 * self.branch
@@ -43,7 +48,8 @@ class Sample(NamedTuple):
 def sample(rows: list[Row], lander: str, ground: str) -> Sample:
     """The landers of one spacecraft on a ground, each with its part of the weight of its branch.
 
-    A journey that failed says nothing of the lander, and is left out.
+    A journey that failed says nothing of the lander, and is left out. Rows may have a `factor`, the landers of their
+    branch that they stand for, and a `branch_weight` other than that of the branch.
     """
     known = {one.name: (number, one.weight) for number, one in enumerate(branches(lander))}
     own = [
@@ -51,9 +57,20 @@ def sample(rows: list[Row], lander: str, ground: str) -> Sample:
         if (row["lander"], row["ground"]) == (lander, ground) and row["branch"] in known and row["end"] in ENDS
     ]  # fmt: skip
     branch = np.array([known[row["branch"]][0] for row in own])
-    counts = np.bincount(branch, minlength=len(known))
-    weight = np.array([known[row["branch"]][1] for row in own]) / counts[branch]
+    factor = np.array([row.get("factor", 1.0) for row in own])
+    sums = np.bincount(branch, factor, minlength=len(known))[branch]
+    of_branch = np.array([row.get("branch_weight", known[row["branch"]][1]) for row in own])
+    weight = np.divide(of_branch * factor, sums, out=np.zeros(len(own)), where=sums > 0.0)
     return Sample(own, branch, weight / weight.sum())
+
+
+def effective_counts(of: Sample, category: np.ndarray, count: int) -> np.ndarray:
+    """Landers in each category [count], of so many as all of them stand for: their number where none is weighted."""
+    factor = of.factor
+    total = factor.sum()
+    if total == 0.0:
+        return np.zeros(count)
+    return np.bincount(category, factor, minlength=count) * total / (factor @ factor)
 
 
 def categories(of: Sample, name: str) -> tuple[np.ndarray, int]:

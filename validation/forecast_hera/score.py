@@ -6,18 +6,34 @@ For each thing that was observed: -log2 of the probability that a forecast gave 
 better. Beside the forecast stand that of hard ground and, as one who knows nothing, equal probabilities of all bins.
 The bins are those of forecast.json; what is not known is left out. Scores of one lander add up as if its bins were
 independent, which they are not: compare forecasts, do not test them. Write a side or a number that begins with a minus
-behind an equals sign: --face=-z --latitude-deg=-12.
+behind an equals sign: --face=-z --latitude-deg=-12. The forecast is that of the first edition, or of --edition DATE.
 """
 
 import argparse
-import json
 import math
+import sys
 from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 import numpy as np
+from answers import FIRST_EDITION, FORECAST
+from branches import LANDERS
+from harness import read_document
 from samples import BINS, ENDS, FACES, cells
 
-HERE = Path(__file__).parent
+EDITIONS = FIRST_EDITION.parent
+
+
+def forecast_of(edition: str) -> dict[str, Any]:
+    """The forecast of an edition, by its date."""
+    path = EDITIONS / edition / FORECAST
+    if not path.exists():
+        dates = ", ".join(sorted(one.parent.name for one in EDITIONS.glob(f"*/{FORECAST}")))
+        raise SystemExit(f"--edition is {edition}; allowed: {dates}; name one")
+    return read_document(path)
 
 
 def observed_bins(options: argparse.Namespace) -> dict[str, int]:
@@ -51,13 +67,14 @@ def scores(forecast: dict[str, list[float]], bins: dict[str, int]) -> dict[str, 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    document = json.loads((HERE / "forecast.json").read_text(encoding="utf-8"))
-    parser.add_argument("lander", choices=list(document["landers"]))
+    parser.add_argument("lander", choices=LANDERS)
     parser.add_argument("--end", choices=ENDS, required=True)
     for name in (*BINS, "latitude_deg", "longitude_deg"):
         parser.add_argument(f"--{name.replace('_', '-')}", type=float, default=None)
     parser.add_argument("--face", choices=FACES)
+    parser.add_argument("--edition", default=FIRST_EDITION.name)
     options = parser.parse_args()
+    document = forecast_of(options.edition)
     bins, of = observed_bins(options), document["landers"][options.lander]
     soil, hard = (scores(of[ground]["scored"], bins) for ground in ("soil", "hard"))
     print(f"{'bits':20}{'forecast':>10}{'hard ground':>13}{'even':>8}")

@@ -1,4 +1,4 @@
-"""Keep the forecast in showcase/forecast_hera: its answers, figures and hashes, the last step of forecast.py.
+"""Keep the first edition of the forecast in showcase/forecast_hera: its answers, figures and hashes.
 
 python validation/forecast_hera/showcase.py
 """
@@ -10,7 +10,7 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
-from answers import FORECAST, HERE
+from answers import FIRST_EDITION, FORECAST
 from harness import ROOT, read_document, write_document
 from landers import RUNS
 
@@ -38,7 +38,7 @@ def keep(out: Path, docs: Path, folder: Path) -> None:
 
 
 def main() -> None:
-    keep(HERE, ROOT / "docs", FOLDER)
+    keep(FIRST_EDITION, ROOT / "docs", FOLDER)
 
 
 if __name__ == "__main__":

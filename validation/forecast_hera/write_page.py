@@ -1,6 +1,6 @@
-"""Write docs/forecast_hera.md and its figures from landers.csv, runs.json, forecast.json and variants.json.
+"""Write the page of a forecast and its figures from its landers.csv, runs.json, forecast.json, and variants.json.
 
-    python validation/forecast_hera/write_page.py
+    python validation/forecast_hera/write_page.py --out FOLDER
 
 The last step of forecast.py.
 """
@@ -266,7 +266,7 @@ def write(out: Path, docs: Path) -> None:
     variants = read_document(HERE / "variants.json")["compared"]
     cost = f"All studies took {runs['cpu_s'] / 60.0:.0f} minutes of CPU time." if "cpu_s" in runs else ""
     write_page(
-        "forecast_hera", docs, made=document["made"], first=first_line(landers), counts=counts, cost=cost,
+        "forecast_hera_edition", docs, made=document["made"], first=first_line(landers), counts=counts, cost=cost,
         ends=ends_table(landers), numbers=numbers_table(landers), regions=regions_table(landers),
         faces=faces_table(landers), decides=decides_table(landers), branches=branches_table(landers),
         variants=variants_part(variants), priors=(HERE / "priors.md").read_text(encoding="utf-8").strip(),
@@ -275,7 +275,8 @@ def write(out: Path, docs: Path) -> None:
 
 
 def main() -> None:
-    write(command_line(__doc__, out=HERE).parse_args().out, DOCS)
+    folder = command_line(__doc__, out=Path).parse_args().out
+    write(folder, folder)
 
 
 if __name__ == "__main__":
