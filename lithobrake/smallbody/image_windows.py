@@ -80,12 +80,15 @@ def image_windows(
     """Choose images and boresights one after another, each with the largest gain over those before it.
 
     shown, toward: as `recognised` gives them; weight: of each place, [count]; field [rad]: of the camera; count: most
-    windows. Ends earlier where no image shows another place. The chosen k windows show at least 1 - 1/e, 63 %, of what
-    the best k would. Source of that bound: [Nemhauser-1978].
+    windows. Ends earlier where no image shows another place. Each image is taken once, in one direction; the directions
+    to all places that it shows are tried. So chosen, the windows show at least half of what the best of all choices
+    among these would. Raises ValueError for weights that are not at least 0. Source of that bound: [Fisher-1978].
     """
     whole_number("count", count, 1)
     free = np.ones(shown.shape[1])
     left, edge = numbers("weight", weight).copy(), np.cos(0.5 * field) - 1e-12
+    if not (left >= 0.0).all():
+        raise ValueError(f"weight has {left.min()!r}, but must be at least 0 everywhere")
     found: list[ImageWindow] = []
     least = LEAST_GAIN * left.sum()
     while len(found) < count:
@@ -106,13 +109,14 @@ def image_windows(
 
 
 def _best_boresight(image: int, shown: NDArray[np.bool_], toward: Floats, left: Floats, edge: float) -> ImageWindow:
-    """The boresight of an image that shows most: toward a place that is left, then amid all places of that window."""
-    rows, wanted = np.flatnonzero(shown), np.flatnonzero(shown & (left > 0.0))
-    within = toward[wanted] @ toward[rows].T >= edge
+    """The boresight of an image that shows most: toward one of its places, then amid those that are left there."""
+    rows = np.flatnonzero(shown)
+    within = toward[rows] @ toward[rows].T >= edge
     best = int(np.argmax(within @ left[rows]))
-    boresight = toward[wanted[best]]
+    boresight = toward[rows[best]]
     amid = (left[rows] * within[best]) @ toward[rows]
     amid /= np.linalg.norm(amid)
+    # Pointed amid them it may show more, and leaves them less near the edge.
     centred = toward[rows] @ amid >= edge
     if left[rows] @ centred >= left[rows] @ within[best]:
         boresight, members = amid, centred

@@ -17,6 +17,7 @@ from lithobrake.study.quantity import Uncertain
 from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import STUDY_FILE
+from lithobrake.vocabulary.given_numbers import whole_number
 from lithobrake.vocabulary.number_words import with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import show
@@ -94,11 +95,7 @@ def search_lander(
             f"{imager.pixels:g} pixels on {extent:g} m; give other images, or fewer --lander-pixels"
         )
     bed = np.unique(table["bed"][rest], return_inverse=True)[1]
-    first = np.full(len(places), -1)
-    for fold in range(FOLDS):
-        held_out = bed % FOLDS == fold
-        chosen = image_windows(shown, toward, everywhere * ~held_out, imager.field, len(windows))
-        first[held_out] = _first_window(chosen, shown, toward, imager.field)[held_out]
+    first = _held_out_windows(bed, shown, toward, imager.field, len(windows))
     found = [_found(first, number, bed) for number in range(len(windows))]
     middle = np.array([places[window.shown].mean(axis=0) for window in windows])
     centre = np.degrees(
@@ -109,6 +106,22 @@ def search_lander(
     shows = _first_window(windows, shown, toward, imager.field)
     ever = float(shown.any(axis=1).mean())
     return LanderSearch(windows, given, latitude, longitude, shows, found, centre, distance, ever)
+
+
+def _held_out_windows(bed: np.ndarray, shown: np.ndarray, toward: Floats, field: float, count: int) -> np.ndarray:
+    """The first window that shows each place, of those chosen without the places of its part of the beds; -1 for none.
+
+    On one bed the parts are of landers.
+    """
+    from lithobrake.smallbody import image_windows
+
+    unit = bed if bed.max() > 0 else np.arange(len(bed))
+    first = np.full(len(bed), -1)
+    for fold in range(min(FOLDS, int(unit.max()) + 1)):
+        held_out = unit % FOLDS == fold
+        chosen = image_windows(shown, toward, (~held_out).astype(np.float64), field, count)
+        first[held_out] = _first_window(chosen, shown, toward, field)[held_out]
+    return first
 
 
 def _first_window(windows: "list[ImageWindow]", shown: np.ndarray, toward: Floats, field: float) -> np.ndarray:
@@ -133,6 +146,7 @@ def imager_of(
     """A camera by the angles [deg] of the command line and the pixels across its field. Raises ValueError as Imager."""
     from lithobrake.smallbody import Imager
 
+    whole_number("image_pixels", image_pixels, 1)
     field = math.radians(field_deg)
     return Imager(field, field / image_pixels, lander_pixels, math.radians(emission_deg), math.radians(sun_deg))
 
