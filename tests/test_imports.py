@@ -24,7 +24,7 @@ ALLOWED: dict[str, set[str]] = {
     "emulator": {"chaos"},
     "analysis": {"chaos", "emulator"},
     "results": {"campaign", "chaos", "emulator", "study", "touchdown"},
-    "scoring": set(),
+    "scoring": {"analysis"},
     "statements": {"results"},
     "report": {"results", "statements"},
     "view": {"results", "report"},

@@ -1,26 +1,29 @@
 """Scores of predictions of a landing against what was observed, with intervals over the predicted sample."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from lithobrake.analysis.confidence import t_quantile
+from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.scoring.observed_landing import ENDS, NUMBERS, ObservedLanding, Place
 from lithobrake.scoring.predicted_landings import UNKNOWN, PredictedLandings
 from lithobrake.scoring.proper_scores import (
     crps,
-    effective_number,
     energy_score,
     log_score,
     probability_below,
 )
 from lithobrake.vocabulary.array_types import Floats
-from lithobrake.vocabulary.estimate import LEVEL, Estimate
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.quantities import SIDES
 
 LOGARITHMIC, CRPS, ENERGY = "logarithmic", "CRPS", "energy"
-# Resamples of the groups for an interval, and their seed.
-RESAMPLES, SEED = 400, 0
+# Groups are left out in so many parts at most, for the error of a score.
+PARTS = 60
+ONE_GROUP = "all predicted landings are of one bed, which tells nothing of others"
 # Of fewer landings there is no distribution; all pairs of more take more memory than a laptop has.
 FEWEST, MOST = 2, 5000
 Score = Callable[[Floats], float]
@@ -30,9 +33,9 @@ Score = Callable[[Floats], float]
 class LandingScore:
     """One score of one prediction.
 
-    kind: LOGARITHMIC [bits], CRPS [the quantity's unit] or ENERGY [m]; score: with the interval over resampled groups;
-    sample_count: landings that it stands on; below: place of the observation in the predictive distribution of a
-    number, from 0 to 1; None for what has none.
+    kind: LOGARITHMIC [bits], CRPS [the quantity's unit] or ENERGY [m]; score: with its interval over
+    groups; sample_count: landings that it stands on; below: place of the observation in the predictive distribution
+    of a number, from 0 to 1; None for what has none.
     """
 
     prediction: str
@@ -47,8 +50,8 @@ class LandingScore:
 def scores(prediction: PredictedLandings, observed: ObservedLanding) -> list[LandingScore]:
     """Score a prediction: its end, and what else was observed among the predicted landings that ended so.
 
-    Landings of unknown end count for and against the end: its interval reaches from all of them ending as observed to
-    none. A quantity that was not observed, or of which fewer than FEWEST predicted landings have a value, is left out.
+    The interval of the end holds whatever became of landings of unknown end. A quantity that was not observed, or of
+    which fewer than FEWEST predicted landings have a value, is left out.
     Raises ValueError for more than MOST landings.
     """
     if len(prediction) > MOST:
@@ -70,13 +73,10 @@ def even_score(kinds: int) -> float:
 
 def _end_score(prediction: PredictedLandings, end: str) -> LandingScore:
     """That of how the landing ended."""
-    unknown, hits = np.isin(prediction.end, UNKNOWN), prediction.end == end
-    known = prediction.where(~unknown)
-    # Where all are known both ways are the sample itself.
-    lower = _interval(prediction, _logarithmic(hits | unknown, len(ENDS), prediction.weight))[0]
-    upper = _interval(prediction, _logarithmic(hits, len(ENDS), prediction.weight))[1]
-    value = log_score(hits[~unknown], len(ENDS), known.weight)
-    return LandingScore(prediction.name, "end", LOGARITHMIC, "bit", Estimate(value, lower, upper), len(known))
+    known = ~np.isin(prediction.end, UNKNOWN)
+    hits = np.where(known, (prediction.end == end).astype(np.float64), np.nan)
+    estimate = _logarithmic(prediction, hits, len(ENDS))
+    return LandingScore(prediction.name, "end", LOGARITHMIC, "bit", estimate, int(known.sum()))
 
 
 def _known(same: PredictedLandings, observed: ObservedLanding) -> Iterator[tuple[str, np.ndarray]]:
@@ -95,24 +95,32 @@ def _quantity_score(quantity: str, sample: PredictedLandings, observed: Observed
     if quantity == "face":
         assert observed.face is not None
         kind, unit = LOGARITHMIC, "bit"
-        score = _logarithmic(_face_hits(sample.face, observed.face), len(SIDES), sample.weight)
+        estimate = _logarithmic(sample, _face_hits(sample.face, observed.face), len(SIDES))
     elif quantity == "place":
         assert observed.place is not None
         radius, error = observed.place.radius, observed.place.error
         kind, unit = ENERGY, "m"
-        score = energy_score(radius * sample.direction, radius * _direction(observed.place), error).of
+        score = energy_score(radius * sample.direction, radius * _direction(observed.place), error)
+        estimate = _with_interval(sample, score.of)
     else:
         measured, values = observed.numbers[quantity], sample.numbers[quantity]
-        kind, unit, score = CRPS, NUMBERS[quantity], crps(values, measured.value, measured.error).of
+        kind, unit = CRPS, NUMBERS[quantity]
+        estimate = _with_interval(sample, crps(values, measured.value, measured.error).of)
         below = probability_below(values, measured.value, measured.error, sample.weight)
-    estimate = Estimate(score(sample.weight), *_interval(sample, score))
     return LandingScore(sample.name, quantity, kind, unit, estimate, len(sample), below)
 
 
-def _logarithmic(hits: np.ndarray, kinds: int, weight: Floats) -> Score:
-    """The logarithmic score by weights; a resample stands for as many landings as the sample."""
-    total = effective_number(weight)
-    return lambda weights: log_score(hits, kinds, weights, total)
+def _logarithmic(sample: PredictedLandings, hits: Floats, kinds: int) -> Estimate:
+    """The logarithmic score of hits, NaN where it is unknown, by the interval of their share; it may have no upper end,
+    where no landing hits.
+    """
+    known = np.isfinite(hits)
+    value = log_score(hits[known], kinds, sample.weight[known])
+    share = share_estimate(hits, sample.group, weights=sample.weight).share
+    if share.bounds is None:
+        return Estimate(value, None, None, why_missing=share.why_missing)
+    low, high = (math.log2(1.0 / bound) if bound > 0.0 else math.inf for bound in reversed(share.bounds))
+    return Estimate(value, min(low, value), None if math.isinf(high) else max(high, value))
 
 
 def _face_hits(faces: np.ndarray, observed: str) -> Floats:
@@ -121,19 +129,21 @@ def _face_hits(faces: np.ndarray, observed: str) -> Floats:
     return found
 
 
-def _interval(sample: PredictedLandings, score: Score) -> tuple[float, float]:
-    """Interval of a score over samples of as many groups, drawn with replacement."""
-    generator, group_count = np.random.default_rng(SEED), int(sample.group.max()) + 1
-    there = np.unique(sample.group)
-    found: list[float] = []
-    while len(found) < RESAMPLES:
-        drawn = np.bincount(generator.choice(there, size=len(there)), minlength=group_count)
-        weights = sample.weight * drawn[sample.group]
-        # All that weigh something may be left out of one sample.
-        if weights.sum() > 0.0:
-            found.append(score(weights))
-    lower, upper = np.quantile(found, [0.5 - 0.5 * LEVEL, 0.5 + 0.5 * LEVEL])
-    return float(lower), float(upper)
+def _with_interval(sample: PredictedLandings, score: Score) -> Estimate:
+    """A score with its interval from those of the sample without each part of its groups, with Student's t.
+
+    Source: [Efron-1993], chapter 11 (jackknife).
+    """
+    value = score(sample.weight)
+    groups = np.unique(sample.group, return_inverse=True)[1]
+    parts = groups % PARTS
+    count = int(parts.max()) + 1
+    if groups.max() == 0:
+        return Estimate(value, None, None, why_missing=ONE_GROUP)
+    without = np.array([score(np.where(parts == part, 0.0, sample.weight)) for part in range(count)])
+    error = math.sqrt((count - 1) / count * float(np.square(without - without.mean()).sum()))
+    reach = t_quantile(count - 1) * error
+    return Estimate(value, max(value - reach, 0.0), value + reach)
 
 
 def _direction(place: Place) -> Floats:
@@ -156,6 +166,11 @@ def score_lines(found: Sequence[LandingScore]) -> list[str]:
 
 
 def _row(one: LandingScore) -> str:
-    score = one.score
-    said = f"{score.value:.3g} ({score.lower:.3g} to {score.upper:.3g})  {one.prediction}, {one.sample_count} landings"
+    said = f"{one.score.value:.3g}{_bounds(one.score)}  {one.prediction}, {one.sample_count} landings"
     return said if one.below is None else f"{said}; {one.below:.0%} of the prediction is below the observation"
+
+
+def _bounds(score: Estimate) -> str:
+    if score.lower is None:
+        return f" (no interval: {score.why_missing})"
+    return f" (at least {score.lower:.3g})" if score.upper is None else f" ({score.lower:.3g} to {score.upper:.3g})"

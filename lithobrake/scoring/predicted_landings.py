@@ -60,15 +60,17 @@ def read_prediction(path: Path) -> PredictedLandings:
     table = read_table(file, ("end",), REMEDY)
     if not table.rows:
         raise ValueError(f"{file} has no landings; {REMEDY}")
-    end = _words(file, table, "end", (*ENDS, *UNKNOWN))
-    if set(end) <= set(UNKNOWN):
+    end, weight = _words(file, table, "end", (*ENDS, *UNKNOWN)), _weights(file, table)
+    if set(end[weight > 0.0]) <= set(UNKNOWN):
         raise ValueError(f"{file}: the end of none of the {len(end)} landings is known; {REMEDY}")
     numbers = {name: _column(file, table, name, 0.0) for name in NUMBERS}
     group = [row["bed"] for row in table.rows] if "bed" in table.rows[0] else range(len(table.rows))
-    return PredictedLandings(
-        str(path), end, _weights(file, table), np.unique(np.asarray(group), return_inverse=True)[1], numbers,
+    found = PredictedLandings(
+        str(path), end, weight, np.unique(np.asarray(group), return_inverse=True)[1], numbers,
         _words(file, table, "face", ("", *SIDES, "x", "y", "z")), _directions(file, table),
     )  # fmt: skip
+    # Landings of no weight are none.
+    return found.where(weight > 0.0)
 
 
 def _weights(file: Path, table: CsvTable) -> Floats:

@@ -21,8 +21,9 @@ ERROR_DRAWS, SEED = 20, 0
 class DistanceScore:
     """A score of distances: the mean distance to the observation less half of that between two sampled values.
 
-    to_observed: shape [count]; within: shape [count, count].
-    Source: [Gneiting-2007], Equations 21 and 22.
+    to_observed: shape [count]; within: shape [count, count]. Two sampled values are two different ones, so that the
+    score of a small sample is in the mean that of the distribution it comes from (a fair score).
+    Source: [Gneiting-2007], Equations 21 and 22; [Ferro-2014] for fair scores.
     """
 
     to_observed: Floats
@@ -33,7 +34,13 @@ class DistanceScore:
         count = len(self.to_observed)
         share = np.ones(count) if weights is None else np.asarray(weights, dtype=np.float64)
         share = share / share.sum()
-        return float(share @ self.to_observed - 0.5 * share @ self.within @ share)
+        own = share * share
+        different = 1.0 - own.sum()
+        if different <= 0.0:
+            # One value alone has no other: what is left is the scatter of the measurement.
+            return float(share @ self.to_observed - 0.5 * share @ self.within @ share)
+        apart = (share @ self.within @ share - own @ np.diagonal(self.within)) / different
+        return float(share @ self.to_observed - 0.5 * apart)
 
 
 def crps(values: ArrayLike, observed: float, error: float = 0.0) -> DistanceScore:
@@ -68,17 +75,17 @@ def energy_score(places: ArrayLike, observed: ArrayLike, error: float = 0.0) -> 
     return DistanceScore(to_observed / (2 * ERROR_DRAWS), within / (2 * ERROR_DRAWS))
 
 
-def log_score(hits: ArrayLike, kinds: int, weights: ArrayLike | None = None, total: float | None = None) -> float:
+def log_score(hits: ArrayLike, kinds: int, weights: ArrayLike | None = None) -> float:
     """Minus the logarithm to base 2 of the probability of what was observed [bits].
 
     hits: for each sampled landing whether it ended so (0 to 1), shape [count]; kinds: of ends that there may be. The
     probability is the posterior mean with Jeffreys' prior, (n + 1/2) / (total + kinds / 2), since what no sample shows
-    is not impossible. total: landings that the sample stands for; default: their effective number by the weights.
+    is not impossible; weighted landings count with their effective number.
     Source: [Gneiting-2007], Section 4.1.
     """
     values = np.asarray(hits, dtype=np.float64)
     share = np.ones(len(values)) if weights is None else np.asarray(weights, dtype=np.float64)
-    count = effective_number(share) if total is None else total
+    count = effective_number(share)
     return -math.log2((count * float(share @ values) / share.sum() + 0.5) / (count + 0.5 * kinds))
 
 

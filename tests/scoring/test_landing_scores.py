@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scoringrules
 
-from lithobrake.scoring.landing_scores import LandingScore, even_score, scores
-from lithobrake.scoring.observed_landing import ObservedLanding, archive, past_landing, read_observation
+from lithobrake.scoring.landing_scores import LandingScore, even_score, score_lines, scores
+from lithobrake.scoring.observed_landing import Measured, ObservedLanding, archive, past_landing, read_observation
 from lithobrake.scoring.predicted_landings import PredictedLandings, read_prediction
 
 OBSERVED = """
@@ -74,15 +75,64 @@ def test_a_sharper_prediction_about_the_observation_scores_better(tmp_path: Path
         assert one.score.lower <= one.score.value <= one.score.upper
 
 
-def test_landings_of_unknown_end_count_for_and_against(tmp_path: Path) -> None:
+def test_landings_of_unknown_end_widen_the_interval_both_ways(tmp_path: Path) -> None:
     observed = observation(tmp_path, 'end = "at_rest"\n')
     ends = ["at_rest"] * 90 + ["escaped"] * 10
     known = scores(prediction(tmp_path, table([{"end": end} for end in ends])), observed)[0].score
     lost = scores(prediction(tmp_path, table([{"end": end} for end in [*ends, *["failed"] * 20]])), observed)[0].score
     assert lost.value == known.value
-    # Scores of the extremes, with the sampling error of a share of 75 % and of 92 % of 120 landings around them.
-    assert lost.upper == pytest.approx(-math.log2(90.5 / 122.0 - 1.645 * 0.040), abs=0.03)
-    assert lost.lower == pytest.approx(-math.log2(110.5 / 122.0 + 1.645 * 0.025), abs=0.02)
+    assert lost.bounds is not None
+    # At the extremes 90 and 110 of 120 landings.
+    assert lost.bounds[0] < -math.log2(110.0 / 120.0) < -math.log2(90.0 / 120.0) < lost.bounds[1]
+    assert known.bounds is not None
+    assert lost.bounds[0] <= known.bounds[0] < known.bounds[1] < lost.bounds[1]
+
+
+def test_an_end_that_no_landing_has_scores_at_least_so_much(tmp_path: Path) -> None:
+    """Of 60 landings none escapes: the score has a lower limit, by the limit of the share, and no upper one."""
+    observed = observation(tmp_path, 'end = "escaped"\n')
+    (found,) = scores(prediction(tmp_path, table([{"end": "at_rest"}] * 60)), observed)
+    assert found.score.upper is None
+    assert found.score.lower == pytest.approx(-math.log2(1.0 - 0.1 ** (1 / 60)), abs=0.01)
+    assert "(at least 4.7" in score_lines([found])[1]
+    all_alike = scores(prediction(tmp_path, table([{"end": "escaped"}] * 60)), observed)[0].score
+    assert all_alike.bounds is not None
+    assert all_alike.bounds[0] == 0.0
+    assert all_alike.bounds[1] == pytest.approx(-math.log2(0.1 ** (1 / 60)), abs=0.01)
+
+
+def test_one_bed_has_no_interval(tmp_path: Path) -> None:
+    rows = [{"bed": 3, "end": "at_rest", "time_s": time} for time in (100.0, 200.0, 400.0)]
+    found = scores(prediction(tmp_path, table(rows)), observation(tmp_path))
+    assert [one.score.bounds for one in found] == [None, None]
+    assert all(one.score.why_missing for one in found)
+    assert "(no interval: " in score_lines(found)[1]
+
+
+def test_landings_without_weight_are_none(tmp_path: Path) -> None:
+    observed = observation(tmp_path)
+    text = "end,weight,time_s\nat_rest,0,10\nat_rest,0,20\nescaped,1,\nescaped,1,\n"
+    found = scores(prediction(tmp_path, text), observed)
+    assert [(one.quantity, one.sample_count) for one in found] == [("end", 2)]
+    with pytest.raises(ValueError, match="the end of none of the 2 landings is known"):
+        prediction(tmp_path, "end,weight\nat_rest,0\nfailed,1\n")
+
+
+@pytest.mark.parametrize(("groups", "each"), [(12, 1), (24, 5)])
+def test_intervals_of_a_score_hold_the_score_of_the_distribution(groups: int, each: int) -> None:
+    """Normal times, observed one standard deviation off: 90 % of 300 intervals hold the closed form."""
+    generator, held = np.random.default_rng(7), 0
+    score = 100.0 * float(scoringrules.crps_normal(1.0, 0.0, 1.0))
+    observed = ObservedLanding("", "", "at_rest", {"time_s": Measured(700.0, 0.0)})
+    count = groups * each
+    for _ in range(300):
+        sample = PredictedLandings(
+            "", np.full(count, "at_rest"), np.ones(count), np.repeat(np.arange(groups), each),
+            {"time_s": generator.normal(600.0, 100.0, count)}, np.full(count, ""), np.full((count, 3), np.nan),
+        )  # fmt: skip
+        bounds = scores(sample, observed)[1].score.bounds
+        held += bounds is not None and bounds[0] <= score <= bounds[1]
+    assert 0.86 <= held / 300 <= 0.95
 
 
 def test_landings_of_one_bed_are_one_observation(tmp_path: Path) -> None:

@@ -23,19 +23,29 @@ def test_an_error_makes_a_normal_law_of_one_value() -> None:
 def test_samples_have_the_score_of_another_library() -> None:
     values = np.random.default_rng(1).gamma(2.0, 3.0, 200)
     for observed in (0.5, 6.0, 30.0):
-        found = float(scoringrules.crps_ensemble(observed, values, estimator="nrg"))
+        found = float(scoringrules.crps_ensemble(observed, values, estimator="fair"))
         assert crps(values, observed).of() == pytest.approx(found, rel=1e-9)
     places = np.random.default_rng(2).normal(0.0, [1.0, 2.0, 3.0], (150, 3))
-    found = float(scoringrules.es_ensemble(np.array([1.0, 1.0, -4.0]), places))
+    found = float(scoringrules.es_ensemble(np.array([1.0, 1.0, -4.0]), places, estimator="fair"))
     assert energy_score(places, [1.0, 1.0, -4.0]).of() == pytest.approx(found, rel=1e-9)
 
 
-def test_weights_count_as_repetitions() -> None:
-    values, repeated = np.array([1.0, 4.0, 9.0]), np.array([1.0, 4.0, 4.0, 9.0, 9.0, 9.0])
-    assert crps(values, 5.0, 0.3).of([1.0, 2.0, 3.0]) == pytest.approx(crps(repeated, 5.0, 0.3).of(), rel=1e-12)
-    places = np.outer(values, [1.0, -1.0, 2.0])
-    other = energy_score(np.outer(repeated, [1.0, -1.0, 2.0]), [1.0, 1.0, 1.0])
-    assert energy_score(places, [1.0, 1.0, 1.0]).of([1.0, 2.0, 3.0]) == pytest.approx(other.of(), rel=1e-12)
+def test_weights_count_in_both_means() -> None:
+    """Of values 1, 4, 9 with weights 1, 2, 3: to 5 in the mean 3; of two different ones 106 / 22."""
+    apart = 2.0 * (2.0 * 3.0 + 3.0 * 8.0 + 6.0 * 5.0) / (36.0 - 14.0)
+    expected = (4.0 + 2.0 + 12.0) / 6.0 - 0.5 * apart
+    assert crps([1.0, 4.0, 9.0], 5.0).of([1.0, 2.0, 3.0]) == pytest.approx(expected, rel=1e-12)
+    places = np.outer([1.0, 4.0, 9.0], [0.0, 0.6, 0.8])
+    assert energy_score(places, [0.0, 3.0, 4.0]).of([1.0, 2.0, 3.0]) == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("count", [4, 12, 60])
+def test_the_score_of_a_small_sample_is_in_the_mean_that_of_its_distribution(count: int) -> None:
+    """Of a standard normal law at 0.3: [Gneiting-2007], Equation 5 in closed form."""
+    generator = np.random.default_rng(count)
+    found = [crps(generator.normal(size=count), 0.3).of() for _ in range(3000)]
+    truth = float(scoringrules.crps_normal(0.3, 0.0, 1.0))
+    assert np.mean(found) == pytest.approx(truth, abs=3.0 * float(np.std(found)) / math.sqrt(3000))
 
 
 def test_an_error_of_a_place_scores_as_a_cloud_of_it() -> None:
