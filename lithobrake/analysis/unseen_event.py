@@ -77,7 +77,8 @@ def limit_of_counts(counts: ArrayLike, part: float = 1.0, correlation: float = L
         return 1.0
     units = part * float(beds @ runs), part * float(beds.sum())
     least, most = (-math.expm1(math.log(1.0 - LEVEL) / one) for one in units)
-    if correlation in (0.0, 1.0) or most - least <= 0.0:
+    # A smaller correlation is none, to more digits than the logarithms of the beta law have.
+    if correlation < 1e-7 or correlation == 1.0 or most - least <= 0.0:
         return most if correlation == 1.0 else least
     # Of the beta law: both parameters together.
     size = (1.0 - correlation) / correlation
@@ -87,4 +88,7 @@ def limit_of_counts(counts: ArrayLike, part: float = 1.0, correlation: float = L
         other = (1.0 - limit) * size
         return float(beds @ (special.gammaln(other + runs) - special.gammaln(other))) - target
 
+    # Where the two ends hardly differ, rounding hides on which side of them the limit lies.
+    if excess(least) <= 0.0 or excess(most) >= 0.0:
+        return least if excess(least) <= 0.0 else most
     return float(optimize.brentq(excess, least, most, xtol=1e-12, rtol=1e-12))

@@ -133,7 +133,7 @@ class Kernel(CPUDispatcher):
         with turn:
             if part in _WHAT and not self._cache.has(sig, self.targetctx):
                 announce(part)
-            with lighter_compilation.rare_garbage_collection():
+            with lighter_compilation.RARE_GARBAGE_COLLECTION:
                 found = super().compile(sig)
             COUNT.note(part, self.py_func)
             return found

@@ -1,9 +1,9 @@
 """Compilation of a kernel with all that it calls at once, and lowering that takes apart no tuple it has just made."""
 
 import gc
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cache
+from threading import Lock
 from types import CodeType
 from typing import Any
 
@@ -282,14 +282,30 @@ class InnerKernel(CPUDispatcher):
         return self.overloads[args].entry_point
 
 
-@contextmanager
-def rare_garbage_collection() -> Iterator[None]:
-    """Collect garbage once so many objects are new: often, the collector would look through all that is compiled again
+class RareGarbageCollection:
+    """Collects garbage once so many objects are new: often, the collector would look through all that is compiled again
     and again; never, what each kernel leaves behind would take 300 MB.
+
+    The threshold is that of the process: the first of several threads that compile sets it, the last one puts it back.
+    A collector that is off, or as rare, is left as it is.
     """
-    usual = gc.get_threshold()
-    gc.set_threshold(NEW_OBJECTS, *usual[1:])
-    try:
-        yield
-    finally:
-        gc.set_threshold(*usual)
+
+    def __init__(self) -> None:
+        self._lock, self._inside, self._usual = Lock(), 0, gc.get_threshold()
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._inside == 0:
+                self._usual = gc.get_threshold()
+                if 0 < self._usual[0] < NEW_OBJECTS:
+                    gc.set_threshold(NEW_OBJECTS, *self._usual[1:])
+            self._inside += 1
+
+    def __exit__(self, *error: object) -> None:
+        with self._lock:
+            self._inside -= 1
+            if self._inside == 0:
+                gc.set_threshold(*self._usual)
+
+
+RARE_GARBAGE_COLLECTION = RareGarbageCollection()

@@ -111,3 +111,10 @@ def test_what_cannot_be_is_refused() -> None:
         unseen_limit([0, 0, 1], weights=[1.0, 2.0])
     with pytest.raises(ValueError, match=r"correlation is 1.5"):
         unseen_limit([0, 0, 1], correlation=1.5)
+
+
+@pytest.mark.parametrize("correlation", [1e-15, 1e-8])
+def test_a_correlation_that_rounding_hides_is_none(correlation: float) -> None:
+    runs = np.repeat(np.arange(12), 20)
+    assert unseen_limit(runs, correlation=correlation) == pytest.approx(unseen_limit(runs, correlation=0.0), rel=1e-4)
+    assert 0.0 < even_limit(2**40, 2**40 - 1) < 1e-10
