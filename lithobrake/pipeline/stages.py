@@ -73,7 +73,11 @@ EMULATOR_PARTS = (
     "pipeline/first_touchdown/emulator.py", "pipeline/first_touchdown/samples.py", "pipeline/runs/energy_bound.py",
     "emulator", "chaos", "analysis", "results/table.py", "vocabulary/quantities.py",
 )  # fmt: skip
-EMULATED_PARTS = ("pipeline/journeys", "pipeline/first_touchdown", *EMULATOR_PARTS, *FLIGHT_PARTS)
+EMULATED_PARTS = (
+    *("pipeline/journeys", "pipeline/first_touchdown", "results/named_emulator.py"),
+    *EMULATOR_PARTS,
+    *FLIGHT_PARTS,
+)
 EXPANSION_PARTS = ("pipeline/expansion", "analysis", "emulator", *RUN_PARTS)
 ANSWER_PARTS = (
     *("pipeline/answer", "pipeline/site.py", "pipeline/journeys", "pipeline/expansion"),
