@@ -1,6 +1,7 @@
-"""What a campaign costs beside its runs: two workers against one on equal landings, and empty runs through Dask.
+"""What a campaign costs beside its runs: two workers against one on equal landings, empty runs through Dask, and the
+coordinator of many processes.
 
-    python benchmarks/campaign_throughput.py [--landings 40] [--empty-runs 20000] [--study DIR]
+    python benchmarks/campaign_throughput.py [--landings 40] [--empty-runs 20000] [--processes 16] [--study DIR]
 
 The share of the workers' time that is spent in runs tells what coordination costs on a machine with other work, too;
 the speed-up itself only on a quiet one: what all other processes took is printed. `LITHOBRAKE_CACHE` set, the kernels
@@ -12,13 +13,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from harness import SCENARIOS, command_line, read_document
+from harness import SCENARIOS, command_line, origin, read_document, write_document
 
 from lithobrake.campaign import DaskExecutor, Ledger, LocalExecutor, Runs, run
 from lithobrake.pipeline import run_study
@@ -28,6 +29,8 @@ from lithobrake.study import StudySource, read_study
 from lithobrake.touchdown.touchdown_model import TouchdownModel, engine_hash
 
 STUDY = SCENARIOS / "first_bounce.toml"
+MANY = Path(__file__).parent / "results" / "campaign_processes.json"
+LANDING_SECONDS, RUNS_A_PROCESS = 0.1, 100
 
 
 class EqualLandings:
@@ -119,8 +122,37 @@ def empty_runs(folder: Path, count: int) -> None:
     )
 
 
+def wait_a_landing(values: Mapping[str, float], seed: int) -> dict[str, float]:
+    """A run as long as a short landing that takes no core: so many processes run at once on a machine of few cores."""
+    time.sleep(LANDING_SECONDS)
+    return {"number": values["number"]}
+
+
+def many_processes(folder: Path, processes: int) -> None:
+    """Time the coordinator of so many processes that make runs of LANDING_SECONDS; kept in results/."""
+    from campaign_throughput import wait_a_landing as model
+
+    count = RUNS_A_PROCESS * processes
+    x = np.arange(count, dtype=float)[:, None]
+    with Ledger(folder / "many.sqlite") as ledger, LocalExecutor(processes) as executor:
+        run(model, -1 - x[: 2 * processes], names=("number",), ledger=ledger, executor=executor)
+        wall, cpu = time.perf_counter(), time.process_time()
+        runs = run(model, x, names=("number",), ledger=ledger, executor=executor)
+        wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    inside = sum(entry.wall_s or 0.0 for entry in runs.records)
+    found = {
+        "processes": processes, "runs": count, "run_s": inside / count, "wall_s": wall, "coordinator_cpu_s": cpu,
+        "coordinator_part": cpu / inside, "in_runs": inside / (processes * wall),
+    }  # fmt: skip
+    write_document(MANY, found | origin(f"benchmarks/campaign_throughput.py --processes {processes}"))
+    print(
+        f"{processes} processes: {count} runs of {inside / count:.3f} s in {wall:.1f} s; the coordinator took "
+        f"{100 * cpu / inside:.2f} % of their time, which was in runs for {100 * inside / (processes * wall):.1f} %"
+    )
+
+
 def main() -> None:
-    parser = command_line(__doc__, landings=40, empty_runs=20_000)
+    parser = command_line(__doc__, landings=40, empty_runs=20_000, processes=0)
     parser.add_argument("--study", type=Path, metavar="DIR", help="keep the bed of the landings in this folder")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
@@ -129,6 +161,8 @@ def main() -> None:
             landings(options.study or folder / "study", folder, options.landings)
         if options.empty_runs:
             empty_runs(folder, options.empty_runs)
+        if options.processes:
+            many_processes(folder, options.processes)
 
 
 if __name__ == "__main__":
