@@ -1,6 +1,7 @@
 """Limit states of whole journeys, and the mean miss, against laws in closed form."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,11 +11,12 @@ import pytest
 from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.mean_over_grounds import mean_over_grounds
 from lithobrake.analysis.subset_simulation import limit_state_met
-from lithobrake.pipeline.answer import journey_limit_states
+from lithobrake.pipeline.answer import journey_limit_states, question_answers
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable
-from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.journey_limit_states import journey_limit_state, rest_values
 from lithobrake.pipeline.answer.mean_miss import mean_miss, offsets
+from lithobrake.pipeline.answer.question_answers import limit_state_results
 from lithobrake.statements.journeys import mean_miss as miss_words
 from lithobrake.statements.limits import limit_state, met_words
 from lithobrake.vocabulary.limit_state import LimitState
@@ -93,6 +95,25 @@ def test_who_does_not_rest_is_not_within_and_who_failed_makes_bounds(job: Any) -
     assert found.runs.from_ == f"{known} of {COUNT} journeys on {BEDS} beds"
     missed = journey_limit_state(job, "missed", LimitState.of("not distance < 20"), table)
     assert missed.probability.value == pytest.approx(60 / known)
+
+
+@pytest.mark.parametrize(("condition", "share"), [("at_rest", (30, 30, 40)), ("not at_rest", (20, 20, 30))])
+def test_a_failed_journey_is_neither_at_rest_nor_not(
+    job: Any, monkeypatch: pytest.MonkeyPatch, condition: str, share: tuple[int, int, int]
+) -> None:
+    """Of 60 landers 30 rest, 20 escape and 10 fail: 30 of 50, and at least 30 and at most 40 of 60."""
+    end = np.repeat(["at_rest", "escaped", "failed"], [30, 20, 10])
+    table = replace(rested(np.zeros(60), np.zeros(60), end), bed=np.arange(60) % 12)
+    job.study.limit_states = SimpleNamespace(conditions=lambda: {"down": condition})
+    for name in ("DesignRuns", "RunFlights", "JourneyTable"):
+        loaded = table if name == "JourneyTable" else SimpleNamespace(fates=None)
+        monkeypatch.setattr(question_answers, name, SimpleNamespace(load=lambda *of, found=loaded: found))
+    monkeypatch.setattr(question_answers, "_values_of_samples", lambda job: {})
+    found = limit_state_results(job, {}, {"at_rest": end_share(table.rests, table.bed)})["down"]
+    met, least, most = share
+    assert found.probability.value == pytest.approx(met / 50)
+    assert found.runs.if_missing == pytest.approx((least / 60, most / 60))
+    assert found.probability.lower < least / 60 < most / 60 < found.probability.upper
 
 
 def test_a_condition_is_decided_by_what_is_known_of_a_journey() -> None:
