@@ -75,17 +75,6 @@ def answers_of(
     return np.array([flown[key] for key in answered]), np.array([known[key].inputs["bed"] for key in answered])
 
 
-def answers_of_design(
-    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
-) -> tuple[np.ndarray, np.ndarray]:
-    """The same of the runs of a design, with 0 for each lander that is flown to the ground and never touches down."""
-    values, bed = answers_of(design.keys, known, flown)
-    if design.descents is None:
-        return values, bed
-    aloft = np.array(design.beds, dtype=float)[~design.descents.touches_down]
-    return np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])
-
-
 def scope(study: Study) -> Scope:
     """What the runs of a study have in common, and when its flights and journeys end."""
     return Scope(
