@@ -153,11 +153,19 @@ def _predicted(end: str, fresh: EmulatedTable, own: EmulatedTable) -> np.ndarray
 
 @dataclass(frozen=True)
 class Refits:
-    """What the refits of an emulator were fitted to: bed_count, run_count; why: a reason for no interval, or None."""
+    """What the refits of an emulator were fitted to: bed_count, run_count; why: a reason for no interval, or None.
+
+    run_count: of what an event is one of, landings or whole journeys: it limits an event that none of them has met.
+    """
 
     bed_count: int
     run_count: int
     why: str | None
+
+    @classmethod
+    def of_journeys(cls, study: Study, table: JourneyTable) -> "Refits":
+        """For events of a lander, of which a journey shows one, however many touchdowns it has."""
+        return cls(len(np.unique(table.bed)), len(table.end), why_no_interval(study))
 
     def with_intervals(
         self, counts: Mapping[str, CountedShare], sample: np.ndarray, met: Mapping[str, np.ndarray]
