@@ -96,6 +96,11 @@ def why_no_interval(study: Study) -> str | None:
     return scope(study).why_no_interval
 
 
+def is_on_one_ground(study: Study) -> bool:
+    """Whether each bed stands for one body of those that a study allows, so that an answer has the interval of one."""
+    return study.ground is not None and study.ground.unknown != "patchy"
+
+
 def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
     """How many of the landings have no outcome, by how they ended; outcomes: landings by outcome."""
     lost = {str(name): outcomes[name] for name in LOST if outcomes.get(name)}

@@ -52,7 +52,10 @@ def rested(east: np.ndarray, north: np.ndarray, end: np.ndarray | None = None) -
 def job(monkeypatch: pytest.MonkeyPatch) -> Any:
     """What the answers read of a study of one ground without an emulator and without inputs."""
     study = SimpleNamespace(
-        ground=None, lander=SimpleNamespace(is_ball=False), journey=SimpleNamespace(emulated_count=0), seed=1
+        ground=None,
+        lander=SimpleNamespace(is_ball=False),
+        journey=SimpleNamespace(emulated_count=0, touchdowns=None),
+        seed=1,
     )
     monkeypatch.setattr(journey_limit_states, "why_no_interval", lambda study: None)
     monkeypatch.setattr("lithobrake.pipeline.answer.mean_miss.why_no_interval", lambda study: None)
@@ -152,6 +155,9 @@ def test_the_emulator_answers_by_the_same_code(job: Any, monkeypatch: pytest.Mon
     assert found.emulator.upper - found.emulator.lower > 0.05
     assert found.agrees
     assert "the emulator gives" in limit_state("near", found)
+    # Landings that are followed for one touchdown only are no journeys to rest, as those of the emulator are.
+    job.study.journey.touchdowns = 1
+    assert journey_limit_state(job, "near", LimitState.of("distance < 20"), table).agrees is None
     # A tenth of a per cent of the landers lies so far out: the journeys have none, and the emulator tells.
     far = journey_limit_state(job, "far", LimitState.of("distance > 55.8"), table)
     assert (far.source, far.probability.value) == ("runs", 0.0)
@@ -174,6 +180,10 @@ def test_on_unknown_ground_the_answer_has_the_interval_of_one_ground(job: Any) -
     said = limit_state("near", found)
     assert "over the grounds that the study allows" in said
     assert "By kind of ground: fine 100 %" in said
+    # On patches landers of a bed of one kind meet the others.
+    for unknown in ("patchy", "both"):
+        job.study.ground.unknown = unknown
+        assert journey_limit_state(job, "near", LimitState.of("distance < 20"), table).grounds == {}
 
 
 def test_words_are_those_of_the_question(job: Any) -> None:
@@ -216,6 +226,61 @@ def test_a_miss_that_cannot_be_told_from_none_moves_no_aim(job: Any) -> None:
     assert not found.is_distinct
     assert miss_words(found).endswith("No shift of the aim can be distinguished from none.")
     assert journey_limit_state(job, "near", LimitState.of("distance < 20"), table).if_aimed is None
+
+
+def test_of_studies_without_a_miss_at_most_one_in_ten_names_another_aim(job: Any) -> None:
+    """Two tests at 90 % each would do so in 19 of 100: 1 - 0.9 squared."""
+    random = np.random.default_rng(12)
+    tables = (rested(*random.normal(0.0, SIGMA, (2, COUNT))) for _ in range(500))
+    alarms = [miss.is_distinct for table in tables if (miss := mean_miss(job, table)) is not None]
+    assert len(alarms) == 500
+    # 1 - 0.95 squared is 0.0975, with a standard error of 0.013.
+    assert 0.06 < np.mean(alarms) < 0.13
+
+
+def test_on_unknown_ground_the_aim_follows_the_mean_of_one_ground(job: Any) -> None:
+    """Grounds on which landers come down 16 m east or 4 m west: the mean of 6 m is known, and that of one is not."""
+    random = np.random.default_rng(13)
+    east = np.where(BED % 2 == 0, 16.0, -4.0) + random.normal(0.0, 1.0, COUNT)
+    table = rested(east, random.normal(0.0, 1.0, COUNT))
+    for unknown, is_distinct in ((None, True), ("patchy", True), ("everywhere", False), ("both", False)):
+        job.study.ground = None if unknown is None else SimpleNamespace(unknown=unknown)
+        found = mean_miss(job, table)
+        assert found is not None
+        assert found.is_distinct == is_distinct, unknown
+
+
+def test_with_the_mean_on_the_aim_the_interval_is_still_that_of_one_ground(job: Any) -> None:
+    """On every second ground all rest at the mean, and on the others none: one ground gives all or nothing."""
+    away = np.where(np.arange(COUNT) // BEDS % 2 == 0, 40.0, -40.0)
+    table = rested(np.full(COUNT, 100.0), np.where(BED % 2 == 0, 0.0, away))
+    near = LimitState.of("distance < 20")
+    over_beds = journey_limit_state(job, "near", near, table).if_aimed
+    job.study.ground = SimpleNamespace(unknown="everywhere", kind={"sand": None})
+    job.design = SimpleNamespace(grounds=SimpleNamespace(each=[SimpleNamespace(kind="sand")] * BEDS))
+    over_grounds = journey_limit_state(job, "near", near, table).if_aimed
+    assert over_beds is not None
+    assert over_grounds is not None
+    assert over_beds.value == over_grounds.value == 0.5
+    assert (over_beds.lower > 0.25, over_beds.upper < 0.75) == (True, True)
+    assert (over_grounds.lower < 0.05, over_grounds.upper > 0.95) == (True, True)
+
+
+def test_places_are_turned_onto_the_aim_without_stretching_them(job: Any) -> None:
+    """A miss of 1 rad on a ball of 100 m, about whose place arcs are Rayleigh of 24.4 m: 53 % within 30 m of it."""
+    radius, sigma, count = 100.0, 24.4, 4800
+    job.site = SimpleNamespace(aim=(0.0, 0.0), aim_radius=radius)
+    arc = sigma / radius * np.sqrt(-2.0 * np.log1p(-(np.arange(count) + 0.5) / count))
+    way = 2.399963 * np.arange(count)
+    # From the place 1 rad east of the aim: on, east and north.
+    on, east, north = np.cos(arc), np.sin(arc) * np.cos(way), np.sin(arc) * np.sin(way)
+    x, y = (on * math.cos(1.0) - east * math.sin(1.0)), (on * math.sin(1.0) + east * math.cos(1.0))
+    latitude, longitude = np.degrees(np.arcsin(north)), np.degrees(np.arctan2(y, x))
+    table = rested(np.zeros(count), np.zeros(count))
+    table.numbers.update(latitude_deg=latitude, longitude_deg=longitude, distance=radius * np.arccos(x))
+    found = journey_limit_state(job, "near", LimitState.of("distance < 30"), table)
+    assert found.if_aimed is not None
+    assert found.if_aimed.value == pytest.approx(1.0 - math.exp(-0.5 * (30.0 / sigma) ** 2), abs=0.01)
 
 
 def test_landers_all_around_the_body_have_no_mean(job: Any) -> None:
