@@ -120,8 +120,8 @@ class AimOnGround:
     share_of_refits: float | None = None
     """fraction of the refits in which this option is the best allowed one, on soil"""
     limit_states: Mapping[str, Share] = field(default_factory=dict)
-    """share of the landers of known end that meet each limit state of journeys; bounds hold whatever becomes of the
-    others"""
+    """share of the landers of known end that meet each limit state of journeys, null where none is known; bounds hold
+    whatever becomes of the others"""
 
 
 @dataclass(frozen=True)

@@ -192,8 +192,9 @@ def _alike(table: "AimResults", places: Sequence[int], count: int, within: str) 
 def _rivals(table: "AimResults", best: int) -> str:
     """How many other options would be better if all landers of unknown outcome were at rest there."""
     least = _compared(table, table.aims[best].soil).value
-    others = [one.soil for one in table.aims if one.soil.allowed]
-    count = sum(_compared(table, one).value + one.missing > least for one in others) - 1
+    others = [(_compared(table, one.soil), one.soil.missing) for one in table.aims if one.soil.allowed]
+    # Of an option of which no end is known all may.
+    count = sum((share.value if share.is_known else 0.0) + missing > least for share, missing in others) - 1
     return (
         f"; if all of these {_verb(table, 'came', 'met')}, up to {count} other options could be better"
         if count > 0
