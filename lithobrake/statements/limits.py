@@ -82,7 +82,7 @@ def limit_state(name: str, found: "LimitStateResult") -> str:
     if found.source == "emulator":
         said += f", from the emulator, since {found.failing_runs:.3g} landings that meet it are too few for an estimate"
         if one.value < found.tail_limit:
-            said += f"; so few beds cannot resolve probabilities below {rare_percent(found.tail_limit)}"
+            said += f"; {found.runs.from_} cannot resolve probabilities below {rare_percent(found.tail_limit)}"
     else:
         said += f", from {found.runs.from_}"
     made = _correlated(found)

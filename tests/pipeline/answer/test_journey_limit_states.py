@@ -128,12 +128,24 @@ def test_a_condition_is_decided_by_what_is_known_of_a_journey() -> None:
         ("face == +z or face == -z", [1, 0, 0, 0, NAN, NAN]), ("face != +z", [0, 1, 1, 1, NAN, NAN]),
         ("at_rest", [1, 1, 0, 0, NAN, NAN]), ("partner or at_rest", [1, 1, 1, 0, NAN, NAN]),
         ("under_way and distance > 0", [0, 0, 0, 0, NAN, NAN]),
+        ("partner and not at_rest", [0, 0, 1, 0, NAN, NAN]),
         ("distance < 20 and face == +z", [1, 0, 0, 0, NAN, NAN]),
         # Nothing is known of the tilt of any: only the distance decides.
         ("tilt_deg < 5 and distance < 20", [NAN, 0, 0, 0, NAN, NAN]),
     ]  # fmt: skip
     for text, met in expected:
         assert limit_state_met(LimitState.of(text), values).tolist() == pytest.approx(met, nan_ok=True), text
+
+
+@pytest.mark.parametrize(("of_touchdown", "of_journey"), [
+    ("escaped", "escaped and not at_rest"), ("partner", "partner and not at_rest"),
+    ("contacts < 3", "contacts < 3 and at_rest"),
+])  # fmt: skip
+def test_words_of_both_are_of_the_first_touchdown_unless_another_is_of_the_journey(
+    of_touchdown: str, of_journey: str
+) -> None:
+    assert not LimitState.of(of_touchdown).journey
+    assert {*LimitState.of(of_journey).journey} == {of_touchdown.split()[0], "at_rest"}
 
 
 def test_the_emulator_answers_by_the_same_code(job: Any, monkeypatch: pytest.MonkeyPatch) -> None:
