@@ -9,6 +9,7 @@ from lithobrake import analysis
 from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.subset_simulation import limit_state_met
+from lithobrake.analysis.unseen_event import runs_by_bed
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
@@ -128,7 +129,7 @@ def _by_emulator(job: Job, state: LimitState, table: JourneyTable) -> Estimate |
     counts, known = analysis.drawn_counts(met, fresh.refit, REFIT_COUNT)
     if known.min() < 2:
         return None
-    totals, fitted = np.bincount(fresh.refit, minlength=REFIT_COUNT), (len(np.unique(table.bed)), len(table.end))
+    totals, fitted = np.bincount(fresh.refit, minlength=REFIT_COUNT), runs_by_bed(table.bed)
     least, most = (analysis.refit_interval(one, totals, *fitted) for one in (counts, counts + totals - known))
     return Estimate(float(counts.sum() / known.sum()), least.lower, most.upper)
 
