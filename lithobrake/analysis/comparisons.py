@@ -11,7 +11,7 @@ from scipy import special
 from lithobrake.analysis.confidence import LEVEL, Bounds, answers, numbered_beds, share_interval, t_quantile
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
-from lithobrake.analysis.unseen_event import even_limit
+from lithobrake.analysis.unseen_event import RunCounts, limit_of_runs
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_CORRELATION
 from lithobrake.vocabulary.estimate import Estimate
@@ -43,11 +43,11 @@ class BestChoice:
 
 
 def best_choice(
-    met: ArrayLike, bed_count: int, allowed: ArrayLike, *, run_count: int | None = None
+    met: ArrayLike, bed_count: int, allowed: ArrayLike, *, run_count: RunCounts | None = None
 ) -> BestChoice:  # fmt: skip
     """Find the choice that meets an event most often, met [choice_count, refit_count, draw_count], of those allowed.
 
-    bed_count, run_count: beds and runs that the emulator was fitted to; None: each bed counts as one run. The same
+    bed_count, run_count: beds and runs that the emulator was fitted to, as for `refit_interval`. The same
     place in two choices is the same draw of all but the choice, so differences are taken draw by draw. Refits scatter
     by what beds do and by what so few draws add; their distances from the mean are scaled to the first, and to what all
     draws together leave of the second.
@@ -75,7 +75,7 @@ def best_choice(
     shares = np.zeros(len(values))
     shares[open_to] = (wins / wins.sum(axis=0)).mean(axis=1)
     not_worse = _not_worse(values, best, open_to, bed_count)
-    limit = even_limit(bed_count if run_count is None else run_count, bed_count)
+    limit = limit_of_runs(bed_count if run_count is None else run_count, bed_count)
     own = _own(values, best, open_to, not_worse, bed_count, limit)
     if runner_up is None:
         return BestChoice(best, None, shares, None, own, not_worse)

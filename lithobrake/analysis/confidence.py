@@ -32,9 +32,9 @@ SMALLEST_COUNT = 1e-9
 LEAST_SPREAD = 1e-6
 
 
-def t_quantile(freedom: float) -> float:
+def t_quantile(freedom: float, level: float = LEVEL) -> float:
     """Quantile of Student's t that a two-sided interval of the level reaches to."""
-    return float(special.stdtrit(freedom, 0.5 + 0.5 * LEVEL))
+    return float(special.stdtrit(freedom, 0.5 + 0.5 * level))
 
 
 def partial_quantile(width: float, error: float, freedom: float) -> float:
@@ -56,9 +56,9 @@ def partial_quantile(width: float, error: float, freedom: float) -> float:
     return float(optimize.brentq(excess, 0.99 * float(special.stdtrit(freedom, LEVEL)), two_sided))
 
 
-def normal_quantile() -> float:
+def normal_quantile(level: float = LEVEL) -> float:
     """Quantile of the standard normal distribution that a two-sided interval of the level reaches to."""
-    return float(special.ndtri(0.5 + 0.5 * LEVEL))
+    return float(special.ndtri(0.5 + 0.5 * level))
 
 
 def share_interval(share: float, half_width: float) -> tuple[float, float]:

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from lithobrake.analysis.confidence import LEVEL, answered_runs, answers
 from lithobrake.analysis.outcome_model import refit_interval
 from lithobrake.analysis.share_estimate import share_estimate
-from lithobrake.analysis.unseen_event import unseen_limit
+from lithobrake.analysis.unseen_event import runs_by_bed, unseen_limit
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.design import sample_inputs
 from lithobrake.chaos.distributions import Distribution
@@ -165,7 +165,7 @@ def failure_probability(
     by_runs = FailureProbability(runs.share, RUNS, runs, None, limit)
     if drawn is None or runs.share.bounds is None:
         return by_runs
-    emulator = refit_interval(*drawn, len(np.unique(beds)), len(beds))
+    emulator = refit_interval(*drawn, *runs_by_bed(beds))
     if RARE <= runs.share.value <= 1.0 - RARE:
         return replace(by_runs, by_emulator=emulator)
     # The emulator learnt nothing from the runs without an outcome: none of them may meet the limit state, or all.

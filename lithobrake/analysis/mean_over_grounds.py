@@ -12,24 +12,28 @@ from lithobrake.analysis.share_estimate import BED_VARIANCE_CONFIDENCE, ONE_BED,
 from lithobrake.vocabulary.estimate import Estimate
 
 
-def mean_over_beds(y: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> Estimate:
+def mean_over_beds(
+    y: ArrayLike, bed: ArrayLike, *, why: str | None = None, level: float = confidence.LEVEL
+) -> Estimate:
     """`mean_estimate`, without an interval where there is a reason `why`, and on one bed; NaN where no run has y."""
     values, beds = confidence.answered_runs(y, bed)
     if not len(values):
         return Estimate(math.nan, None, None, why_missing=why)
     if why is not None or len(np.unique(beds)) < 2:
         return Estimate(float(values.mean()), None, None, why_missing=why or ONE_BED)
-    return mean_estimate(y, bed)
+    return mean_estimate(y, bed, level=level)
 
 
-def mean_over_grounds(y: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> Estimate:
+def mean_over_grounds(
+    y: ArrayLike, bed: ArrayLike, *, why: str | None = None, level: float = confidence.LEVEL
+) -> Estimate:
     """The mean of an output y [run_count], NaN where a run has none, with the interval of its mean on one ground.
 
     bed: the ground of each run [run_count]. why: a reason why these runs give no interval. The output is taken as the
     sum of what the ground and what all else adds, each with one variance; that of grounds stands at an upper limit, as
     in share_estimate. Source: [Searle-1992], section 3.6 (components of variance).
     """
-    mean = mean_over_beds(y, bed, why=why)
+    mean = mean_over_beds(y, bed, why=why, level=level)
     if mean.lower is None or mean.upper is None:
         return mean
     values, beds = confidence.answered_runs(y, bed)
@@ -37,6 +41,6 @@ def mean_over_grounds(y: ArrayLike, bed: ArrayLike, *, why: str | None = None) -
         return Estimate(mean.value, None, None, why_missing=FEW)
     components = confidence.bed_components(values, beds)
     variance = components.variance_at(BED_VARIANCE_CONFIDENCE) + standard_error(values, beds) ** 2
-    half = confidence.normal_quantile() * math.sqrt(variance)
+    half = confidence.normal_quantile(level) * math.sqrt(variance)
     # The mean of one ground is known no better than that over all.
-    return Estimate(mean.value, min(mean.value - half, mean.lower), max(mean.value + half, mean.upper))
+    return Estimate(mean.value, min(mean.value - half, mean.lower), max(mean.value + half, mean.upper), level)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import share_interval, t_quantile
-from lithobrake.analysis.unseen_event import HALF_RUN, even_limit
+from lithobrake.analysis.unseen_event import HALF_RUN, RunCounts, limit_of_runs
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.vocabulary.estimate import Estimate
@@ -91,16 +91,18 @@ class OutcomeModel:
         return np.column_stack(columns)
 
 
-def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_count: int | None = None) -> Estimate:
+def refit_interval(
+    counts: ArrayLike, totals: ArrayLike, bed_count: int, run_count: RunCounts | None = None
+) -> Estimate:
     """Share of draws that have met an event, with its interval over beds that were not in the study.
 
     counts, totals [refit_count]: draws of each refit that have met it, and all of its draws, at least two. bed_count:
     beds that the emulator was fitted to. The scatter of the refits' shares, less what finite draws add, is the error of
     the fit. An event that no draw or every draw has met is bounded by what so many runs can say (`unseen_limit`), and
     one that few have met has no wider bounds than that, or than its error on the plain scale. run_count: runs that the
-    emulator was fitted to. An event that less than half of a run is expected to have met has the bounds of one that
-    none has met at least: refits of so few runs do not scatter by what these have not shown. None: it is not known, and
-    each bed counts as one run.
+    emulator was fitted to, or those on each bed [bed_count], where they are known. An event that less than half of a
+    run is expected to have met has the bounds of one that none has met at least: refits of so few runs do not scatter
+    by what these have not shown. None: it is not known, and each bed counts as one run.
     Raises ValueError for fewer than two refits or beds, for a refit with fewer than two draws, and for counts that are
     no part of their totals.
     Source: [Sun-2011] (variance between, freed of that within); [Field-2007] (groups drawn whole).
@@ -114,7 +116,7 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_cou
     if not ((met >= 0.0) & (met <= drawn)).all():
         raise ValueError("counts must lie between 0 and totals in every refit: draws that have met the event, of all")
     share, total = float(met.sum() / drawn.sum()), float(drawn.sum())
-    limit = even_limit(bed_count if run_count is None else run_count, bed_count)
+    limit = limit_of_runs(bed_count if run_count is None else run_count, bed_count)
     if share in (0.0, 1.0):
         return Estimate(share, share * (1.0 - limit), share + (1.0 - share) * limit)
     shares = met / drawn
@@ -126,7 +128,7 @@ def refit_interval(counts: ArrayLike, totals: ArrayLike, bed_count: int, run_cou
     error = math.sqrt(between * bed_count / (bed_count - 1) + share * (1.0 - share) / total)
     half = t_quantile(bed_count - 1) * error
     lower, upper = share_interval(share, half)
-    is_unseen = run_count is not None and min(share, 1.0 - share) * run_count < HALF_RUN
+    is_unseen = run_count is not None and min(share, 1.0 - share) * np.sum(run_count) < HALF_RUN
     # On the logit scale a few draws with the event could pass for anything.
     if share < 0.5:
         upper = min(upper, max(share + half, limit))

@@ -20,16 +20,16 @@ from lithobrake.vocabulary.number_words import QUANTILES
 TAIL = 0.1
 
 
-def mean_estimate(y: ArrayLike, bed: ArrayLike) -> Estimate:
-    """Mean of an output y [run_count], NaN where a run has none, with its interval from beds [run_count].
+def mean_estimate(y: ArrayLike, bed: ArrayLike, *, level: float = LEVEL) -> Estimate:
+    """Mean of an output y [run_count], NaN where a run has none, with its interval of a level from beds [run_count].
 
     For an output with a heavy tail, as the contact time, read the quantiles: a few rare runs carry much of its mean,
     and where a study has none of them the interval promises too much (0.73 to 0.93 at a tail index of 1.9). Raises
     ValueError for runs on one bed. Source: [Cameron-2008] (errors from few clusters).
     """
     values, beds = _known(y, bed)
-    mean, half = float(values.mean()), t_quantile(int(beds.max())) * standard_error(values, beds)
-    return Estimate(mean, mean - half, mean + half)
+    mean, half = float(values.mean()), t_quantile(int(beds.max()), level) * standard_error(values, beds)
+    return Estimate(mean, mean - half, mean + half, level)
 
 
 def quantile_estimates(y: ArrayLike, bed: ArrayLike, probabilities: Sequence[float] = QUANTILES) -> list[Estimate]:

@@ -1,6 +1,7 @@
 """How likely an event may be that none of the runs has met, which are alike on one bed to an unknown extent."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,8 @@ from lithobrake.vocabulary.number_words import EXPANSION_LEVEL
 MOST_UNITS = 2**53
 # An event that fewer runs are expected to have met is as one that none has met.
 HALF_RUN = 0.5
+# How many runs there are in all, or on each bed.
+RunCounts = int | Sequence[int]
 
 
 def upper_limit(unit_count: int, level: float = EXPANSION_LEVEL) -> float:
@@ -67,6 +70,19 @@ def even_limit(run_count: int, bed_count: int) -> float:
     beds = min(whole_number("bed_count", bed_count, 0, MOST_UNITS), whole_number("run_count", run_count, 0, MOST_UNITS))
     # Beds with as many runs count alike, so one of them stands for all.
     return limit_of_counts(np.array([run_count / beds]), float(beds)) if beds else 1.0
+
+
+def runs_by_bed(bed: ArrayLike) -> tuple[int, tuple[int, ...]]:
+    """How many beds there are, and how many runs on each, by the bed of each run [run_count]."""
+    counts = np.unique(np.asarray(bed), return_counts=True)[1].tolist()
+    return len(counts), tuple(counts)
+
+
+def limit_of_runs(runs: RunCounts, bed_count: int) -> float:
+    """The limit of so many runs as if evenly over beds, or of those of each bed [bed_count] where these are known."""
+    if isinstance(runs, Sequence):
+        return limit_of_counts([count for count in runs if count])
+    return even_limit(runs, bed_count)
 
 
 def limit_of_counts(counts: ArrayLike, part: float = 1.0, correlation: float = LARGEST_CORRELATION) -> float:

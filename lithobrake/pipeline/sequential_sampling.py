@@ -5,13 +5,17 @@ has. So a study that is stopped and run again goes the same way, and whoever onl
 runs it has by now.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from lithobrake.analysis import half_width_of, next_run_count
+from lithobrake.analysis.subset_simulation import limit_state_met
+from lithobrake.campaign import Record
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.answer.journey_limit_states import journeys_met
+from lithobrake.pipeline.answer.journey_limit_states import journeys_met, rest_values
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_touchdown.run_flights import RUN_FLIGHTS_FILE, RunFlights
 from lithobrake.pipeline.job import Job
@@ -23,6 +27,7 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.study import Study
 from lithobrake.vocabulary.file_names import JOURNEYS_FILE
 from lithobrake.vocabulary.limit_state import LimitState
+from lithobrake.vocabulary.outcomes import FlightStatus
 
 
 def flown_shares(study: Study, folder: StudyFolder) -> dict[str, float]:
@@ -66,6 +71,37 @@ def _of_journeys(study: Study, folder: StudyFolder, state: LimitState | None) ->
     return dict(zip(keys, met[table.numbers["touchdowns"] > 0.0].tolist(), strict=True))
 
 
+def answers_of_design(
+    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """`run_answers.answers_of` of the runs of a design, and of the landers that are flown and never touch down."""
+    values, bed = run_answers.answers_of(design.keys, known, flown)
+    aloft, bed_of_aloft = answers_aloft(design)
+    return np.concatenate([values, aloft]), np.concatenate([bed, bed_of_aloft])
+
+
+def answers_aloft(design: DrawnDesign) -> tuple[np.ndarray, np.ndarray]:
+    """The answer of each lander that is flown to the ground and never touches down, and its bed, both [count].
+
+    None of them rests or returns. A limit state of journeys may hold for them, by the end of the flight; one of first
+    touchdowns, which they do not have, is not known of them.
+    """
+    if design.descents is None:
+        return np.empty(0), np.empty(0)
+    from lithobrake.smallbody.landers import ENDS
+
+    aloft, state = ~design.descents.touches_down, _asked_state(design.study)
+    bed = np.array(design.beds, dtype=float)[aloft]
+    if state is None:
+        return np.zeros(len(bed)), bed
+    if not state.journey:
+        return np.full(len(bed), np.nan), bed
+    end = np.array(
+        [str(ENDS[FlightStatus(word)]) for word in design.descents.flights.status[aloft].tolist()], dtype=str
+    )
+    return limit_state_met(state, rest_values(end, {})), bed
+
+
 def _failing_shares(state: LimitState, folder: StudyFolder) -> dict[str, float]:
     """Share of its flights in which each run meets the limit state that the half width is asked of, by key."""
     if folder.key_of(file_of("drawn")) is None:
@@ -85,7 +121,7 @@ def grown(design: DrawnDesign, folder: StudyFolder) -> DrawnDesign:
     known, flown = known_runs(study, folder), flown_shares(study, folder)
     # More than one step where a folder has runs of a larger count already.
     while known.keys() & flown.keys() >= set(design.keys):
-        values, bed = run_answers.answers_of_design(design, known, flown)
+        values, bed = answers_of_design(design, known, flown)
         count = next_run_count(values, bed, asked.half_width, asked.most_runs, _bed_count_of(study))
         if count is None:
             break
@@ -125,7 +161,7 @@ def _end(job: Job) -> str:
 
 def _width(job: Job) -> float | None:
     known, flown = known_runs(job.study, job.folder), flown_shares(job.study, job.folder)
-    return half_width_of(*run_answers.answers_of_design(job.design, known, flown))
+    return half_width_of(*answers_of_design(job.design, known, flown))
 
 
 def _bed_count_of(study: Study) -> Callable[[int], int]:

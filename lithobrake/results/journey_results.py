@@ -65,7 +65,8 @@ class MeanMiss:
     longitude_deg: float
     """longitude of the mean"""
     is_distinct: bool
-    """whether the interval of either number leaves out 0"""
+    """whether it can be told from none: one of the two numbers, on one ground where there is one, leaves out 0 with an
+    interval of 95 %, so that both together hold at 90 % (Bonferroni)"""
     __repr__ = short_repr
 
 

@@ -57,17 +57,19 @@ class LimitStateResult(Inlined):
     """whether it is of the whole journey of a lander, and not of its first touchdown; then `landings` above are
     journeys"""
     agrees: bool | None = None
-    """of a journey: whether landings and emulator agree within their joint intervals; null without both"""
+    """of a journey: whether landings and emulator agree within their joint intervals; null without both, and where
+    landings are followed for some touchdowns only (journey.touchdowns)"""
     radius_m: float | None = None
     """distance from the aim point within which a lander at rest meets it [m]; null for another condition"""
     if_aimed: Share | None = None
     """with such a distance: the probability if all places of rest moved by the mean miss (results.rest.miss), so that
-    their mean were the aim point; null where this mean cannot be distinguished from the aim point"""
+    their mean were the aim point; with ground.unknown = "everywhere" or "both" its bounds hold that of one ground; null
+    where this mean cannot be distinguished from the aim point"""
     over_grounds: Share | None = None
     """of a journey, with ground.unknown = "everywhere" or "both": the probability over all grounds, with bounds that
     hold that of one ground; null without"""
     grounds: Mapping[str, Share] = field(default_factory=dict)
-    """of a journey, with [ground]: the probability on each kind of ground; empty without"""
+    """of a journey, with ground.unknown = "everywhere": the probability on each kind of ground; empty without"""
     __repr__ = short_repr
 
 
@@ -118,8 +120,8 @@ class AimOnGround:
     share_of_refits: float | None = None
     """fraction of the refits in which this option is the best allowed one, on soil"""
     limit_states: Mapping[str, Share] = field(default_factory=dict)
-    """share of the landers of known end that meet each limit state of journeys; bounds hold whatever becomes of the
-    others"""
+    """share of the landers of known end that meet each limit state of journeys, null where none is known; bounds hold
+    whatever becomes of the others"""
 
 
 @dataclass(frozen=True)

@@ -82,7 +82,7 @@ def limit_state(name: str, found: "LimitStateResult") -> str:
     if found.source == "emulator":
         said += f", from the emulator, since {found.failing_runs:.3g} landings that meet it are too few for an estimate"
         if one.value < found.tail_limit:
-            said += f"; so few beds cannot resolve probabilities below {rare_percent(found.tail_limit)}"
+            said += f"; {found.runs.from_} cannot resolve probabilities below {rare_percent(found.tail_limit)}"
     else:
         said += f", from {found.runs.from_}"
     made = _correlated(found)
@@ -192,8 +192,9 @@ def _alike(table: "AimResults", places: Sequence[int], count: int, within: str) 
 def _rivals(table: "AimResults", best: int) -> str:
     """How many other options would be better if all landers of unknown outcome were at rest there."""
     least = _compared(table, table.aims[best].soil).value
-    others = [one.soil for one in table.aims if one.soil.allowed]
-    count = sum(_compared(table, one).value + one.missing > least for one in others) - 1
+    others = [(_compared(table, one.soil), one.soil.missing) for one in table.aims if one.soil.allowed]
+    # Of an option of which no end is known all may.
+    count = sum((share.value if share.is_known else 0.0) + missing > least for share, missing in others) - 1
     return (
         f"; if all of these {_verb(table, 'came', 'met')}, up to {count} other options could be better"
         if count > 0

@@ -126,6 +126,16 @@ def test_what_few_runs_could_not_show_is_bounded_by_their_beds(met: int, lower: 
     assert plain.upper - plain.lower < 0.1
 
 
+def test_runs_that_crowd_on_few_beds_limit_less_than_even_ones() -> None:
+    """20, 20 and ten times 2 of 60 runs: the product of (j - q) / j over the runs of each bed is 0.1 at 10.0 %."""
+    none, totals = np.zeros(50), np.full(50, 100)
+    found = refit_interval(none, totals, 12, [20, 20, *[2] * 10]).upper
+    assert found == pytest.approx(0.100, abs=5e-4)
+    each = [np.prod((np.arange(1, runs + 1) - found) / np.arange(1, runs + 1)) for runs in (20, 2)]
+    assert each[0] ** 2 * each[1] ** 10 == pytest.approx(0.1)
+    assert refit_interval(none, totals, 12, [5] * 12).upper == pytest.approx(refit_interval(none, totals, 12, 60).upper)
+
+
 @pytest.mark.parametrize(("counts", "totals", "beds"), [([1], [5], 12), ([1, 2], [5, 1], 12), ([1, 2], [5, 5], 1)])
 def test_one_of_anything_gives_no_interval(counts: list[int], totals: list[int], beds: int) -> None:
     with pytest.raises(ValueError, match="give at least two of each"):

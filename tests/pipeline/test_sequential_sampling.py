@@ -2,6 +2,7 @@
 
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.planning.planner import plan_of
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import function_identity
-from lithobrake.pipeline.sequential_sampling import grown
+from lithobrake.pipeline.sequential_sampling import answers_of_design, grown
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.results import open_study
 from lithobrake.study import StudySource
@@ -113,6 +114,40 @@ def test_a_half_width_may_be_that_of_a_limit_state_of_journeys(tmp_path: Path) -
     table = JourneyTable.load(StudyFolder.only_read(tmp_path))
     near = np.where(table.end == "failed", np.nan, table.rests & (table.numbers["distance"] < 20.0))
     assert (half_width_of(near, table.bed) or 1.0) <= 0.14
+
+
+def of_landers(condition: str) -> Any:
+    """A design of 60 landers on 12 beds of which every third escapes before a contact, and its limit state."""
+    status = np.where(np.arange(60) % 3 == 0, "escaped", "impact")
+    study = SimpleNamespace(
+        design=SimpleNamespace(half_width_of="lost"),
+        limit_states=SimpleNamespace(conditions=lambda: {"lost": condition}),
+    )
+    descents = SimpleNamespace(touches_down=status == "impact", flights=SimpleNamespace(status=status))
+    beds = np.random.default_rng(1).permutation(60) % 12
+    keys = [str(lander) for lander in np.flatnonzero(status == "impact")]
+    return SimpleNamespace(study=study, descents=descents, beds=beds.tolist(), keys=keys)
+
+
+@pytest.mark.parametrize(("condition", "met"), [
+    ("escaped or under_way", 20), ("not at_rest", 20), ("distance < 20", 0), ("not distance < 20", 20),
+])  # fmt: skip
+def test_landers_that_never_touch_down_meet_limit_states_of_journeys(condition: str, met: int) -> None:
+    """All that touch down come to rest within 20 m, so the interval is that of 20 of 60, or of 40 of 60 near."""
+    design = of_landers(condition)
+    known: Any = {key: SimpleNamespace(inputs={"bed": design.beds[int(key)]}) for key in design.keys}
+    values, bed = answers_of_design(design, known, dict.fromkeys(design.keys, float(met == 0)))
+    escaped = np.arange(60) % 3 == 0
+    expected = (escaped if met else ~escaped).astype(float)
+    assert values.sum() == expected.sum()
+    # 1.8 sqrt(p (1 - p) / 60) is 11 points.
+    assert half_width_of(values, bed) == pytest.approx(0.11, abs=0.01)
+    assert half_width_of(values, bed) == pytest.approx(half_width_of(expected, design.beds))
+
+
+def test_landers_that_never_touch_down_have_no_first_touchdown() -> None:
+    values, _ = answers_of_design(of_landers("captured"), {}, {})
+    assert np.isnan(values).tolist() == [True] * 20
 
 
 def test_what_ends_is_the_study_of_that_many_runs(narrow: tuple[Path, DesignRuns, list[str]]) -> None:

@@ -10,7 +10,7 @@ from lithobrake.analysis import quantile_within, refit_interval
 from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
-from lithobrake.analysis.unseen_event import even_limit
+from lithobrake.analysis.unseen_event import RunCounts, limit_of_runs, runs_by_bed
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
@@ -84,7 +84,7 @@ def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[Emulate
 def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> dict[str, CountedShare]:
     """Shares of the landers of known end, with bounds that hold whatever becomes of the others."""
     totals, known = np.bincount(fresh.refit, minlength=REFIT_COUNT), fresh.end != UNKNOWN_END
-    why, beds = why_no_interval(study), len(np.unique(table.bed))
+    why, fitted = why_no_interval(study), runs_by_bed(table.bed)
     found = {}
     for end in (*EMULATED_ENDS, JourneyEnd.FAILED.value):
         met = fresh.end == end
@@ -93,7 +93,7 @@ def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> di
             found[end] = CountedShare(count, Estimate(share, None, None, why_missing=why))
             continue
         least, most = (
-            refit_interval(np.bincount(fresh.refit[one], minlength=REFIT_COUNT), totals, beds, len(table.end))
+            refit_interval(np.bincount(fresh.refit[one], minlength=REFIT_COUNT), totals, *fitted)
             for one in (met, met | ~known)
         )
         found[end] = CountedShare(count, Estimate(share, least.lower, most.upper))
@@ -153,11 +153,20 @@ def _predicted(end: str, fresh: EmulatedTable, own: EmulatedTable) -> np.ndarray
 
 @dataclass(frozen=True)
 class Refits:
-    """What the refits of an emulator were fitted to: bed_count, run_count; why: a reason for no interval, or None."""
+    """What the refits of an emulator were fitted to: bed_count, run_count; why: a reason for no interval, or None.
+
+    run_count: of what an event is one of, landings or whole journeys, in all or on each bed: it limits an event that
+    none of them has met.
+    """
 
     bed_count: int
-    run_count: int
+    run_count: RunCounts
     why: str | None
+
+    @classmethod
+    def of_journeys(cls, study: Study, table: JourneyTable) -> "Refits":
+        """For events of a lander, of which a journey shows one, however many touchdowns it has."""
+        return cls(*runs_by_bed(table.bed), why_no_interval(study))
 
     def with_intervals(
         self, counts: Mapping[str, CountedShare], sample: np.ndarray, met: Mapping[str, np.ndarray]
@@ -188,7 +197,7 @@ class Refits:
 
     def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
         """The same with bounds of an outcome that no run had from 0 to what so many runs can say of it."""
-        limit = even_limit(self.run_count, self.bed_count)
+        limit = limit_of_runs(self.run_count, self.bed_count)
         for outcome in set(TouchdownOutcome) - {TouchdownOutcome.CLEAR, *run_outcomes}:
             one = counts[outcome.value]
             if one.share.upper is not None:

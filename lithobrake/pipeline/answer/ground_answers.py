@@ -6,7 +6,7 @@ from lithobrake.analysis.ground_spread import median_over_grounds, share_over_gr
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.smooth_curve import curve_sizes, median_curve, share_curve
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
-from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.answer.run_answers import is_on_one_ground, why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.results.ground_results import FinerGround, GroundBed, GroundCurve, GroundKindResults, OverGrounds
 from lithobrake.study import Study
@@ -19,8 +19,8 @@ FEWEST_OF_CURVE = 6
 
 def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None:
     """What one of the grounds would give, or one of the bodies where these are patchy too; None where there is one."""
-    ground, rests = design.study.ground, table.rests
-    if ground is None or ground.unknown == "patchy" or not len(table.end):
+    rests = table.rests
+    if not is_on_one_ground(design.study) or not len(table.end):
         return None
     why, faces = why_no_interval(design.study), table.face[rests]
     return OverGrounds(

@@ -9,11 +9,12 @@ from lithobrake import analysis
 from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.subset_simulation import limit_state_met
+from lithobrake.analysis.unseen_event import runs_by_bed
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.answer.mean_miss import mean_miss, rest_offsets
-from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.answer.mean_miss import mean_miss, offsets
+from lithobrake.pipeline.answer.run_answers import is_on_one_ground, why_no_interval
 from lithobrake.pipeline.answer.run_estimates import inputs_of_journeys
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.emulated_journeys import FRESH
@@ -91,8 +92,7 @@ def journey_limit_state(job: Job, name: str, state: LimitState, table: JourneyTa
     by_runs = replace(found.by_runs, from_=found.by_runs.from_.replace("landing", "journey"))
     # As of the fraction at rest the landings answer, and the emulator stands beside them.
     by_emulator = None if why is not None else _by_emulator(job, state, table)
-    ground, kinds = job.study.ground, _by_kind(job, met, table, why)
-    is_one = ground is not None and ground.unknown != "patchy"
+    is_one = is_on_one_ground(job.study)
     return LimitStateResult(
         condition=state.text,
         probability=found.probability,
@@ -105,11 +105,11 @@ def journey_limit_state(job: Job, name: str, state: LimitState, table: JourneyTa
         inputs=_inputs(job, met, table),
         statement="",
         of_journey=True,
-        agrees=_agrees(by_runs.share, by_emulator),
+        agrees=_agrees(job.study, by_runs.share, by_emulator),
         radius_m=state.radius,
         if_aimed=_if_aimed(job, state, met, table, why),
         over_grounds=share_over_grounds(met, table.bed, why=why) if is_one else None,
-        grounds=kinds,
+        grounds=_by_kind(job, met, table, why),
     )
 
 
@@ -129,32 +129,39 @@ def _by_emulator(job: Job, state: LimitState, table: JourneyTable) -> Estimate |
     counts, known = analysis.drawn_counts(met, fresh.refit, REFIT_COUNT)
     if known.min() < 2:
         return None
-    totals, fitted = np.bincount(fresh.refit, minlength=REFIT_COUNT), (len(np.unique(table.bed)), len(table.end))
+    totals, fitted = np.bincount(fresh.refit, minlength=REFIT_COUNT), runs_by_bed(table.bed)
     least, most = (analysis.refit_interval(one, totals, *fitted) for one in (counts, counts + totals - known))
     return Estimate(float(counts.sum() / known.sum()), least.lower, most.upper)
 
 
 def _if_aimed(job: Job, state: LimitState, met: np.ndarray, table: JourneyTable, why: str | None) -> Estimate | None:
-    """The probability of resting within a distance of the mean of the landers at rest.
+    """The probability of resting within a distance of the mean of the landers at rest, by arcs.
 
-    None for other limit states, and where this mean cannot be told from the aim point.
+    So it would be if all places were turned about the centre until this mean is on the aim point. On unknown ground it
+    has the interval of one ground. None for other limit states, and where the mean cannot be told from the aim point.
     """
-    places, miss = rest_offsets(job, table), mean_miss(job, table)
-    if state.radius is None or places is None or miss is None or not miss.is_distinct:
+    miss = mean_miss(job, table)
+    if state.radius is None or miss is None or not miss.is_distinct:
         return None
-    away = np.linalg.norm(places - np.nanmean(places, axis=0), axis=1)
+    places = table.of_rest("latitude_deg"), table.of_rest("longitude_deg")
+    away = np.linalg.norm(offsets(job.site, *places, (miss.latitude_deg, miss.longitude_deg)), axis=1)
     near = np.where(np.isnan(met), np.nan, table.rests & (away < state.radius))
+    if is_on_one_ground(job.study):
+        return share_over_grounds(near, table.bed, why=why)
     return analysis.share_estimate(near, table.bed, why=why).share
 
 
-def _agrees(landings: Estimate, emulator: Estimate | None) -> bool | None:
+def _agrees(study: Study, landings: Estimate, emulator: Estimate | None) -> bool | None:
+    # Landers of the emulator go on to rest, whatever the landings are followed for.
+    if study.journey.touchdowns is not None:
+        return None
     bounds = None if emulator is None else difference_bounds(landings, emulator)
     return None if bounds is None else bounds[0] <= 0.0 <= bounds[1]
 
 
 def _by_kind(job: Job, met: np.ndarray, table: JourneyTable, why: str | None) -> dict[str, Estimate]:
-    """The probability on each kind of ground alone; empty for a study of one ground."""
-    if job.study.ground is None:
+    """The probability on each kind of ground alone; empty for one ground, and where landers meet several."""
+    if job.study.ground is None or job.study.ground.unknown != "everywhere":
         return {}
     kinds = np.array([one.kind for one in job.design.grounds.each])[table.bed]
     here = {name: kinds == name for name in job.study.ground.kind}

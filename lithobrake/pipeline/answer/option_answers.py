@@ -1,5 +1,6 @@
 """The delivery options of a study: what becomes of the landers of each on both grounds, and the best of them."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -127,11 +128,12 @@ def _of_aim(landers: OptionLanders, row: int, ground: str, fitted: Refits) -> Ai
 
 
 def _of_state(landers: OptionLanders, row: int, name: str, ground: str, fitted: Refits) -> Estimate:
-    """Share of the landers of known end at one aim that meet a limit state; bounds hold whatever the others do."""
+    """Share of the landers of known end at one aim that meet a limit state, NaN where no end is known; bounds hold
+    whatever the others do."""
     met, refit = landers.met(name)[row], landers.refit[row]
     everyone, known = np.ones(len(met), dtype=bool), np.isfinite(met)
     least, most = (_share(np.where(known, met, end) == 1.0, everyone, refit, ground, fitted) for end in (0.0, 1.0))
-    return Estimate(float(met[known].sum() / max(known.sum(), 1)), least.lower, most.upper)
+    return Estimate(float(met[known].mean()) if known.any() else math.nan, least.lower, most.upper)
 
 
 def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitted: Refits) -> Estimate:
@@ -148,7 +150,7 @@ def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> 
     known |= {AT_REST: part.settled.value, "missing": part.missing}
     far = {"distance_p95": part.distance_p95, "time_p95": part.time_p95}
     known |= {name: None if one is None else one.value for name, one in far.items()}
-    known |= {name: one.value for name, one in part.limit_states.items()}
+    known |= {name: one.value if one.is_known else None for name, one in part.limit_states.items()}
     return all(limit.keeps(known[limit.name]) for limit in limits)
 
 

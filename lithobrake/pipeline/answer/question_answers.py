@@ -48,7 +48,9 @@ def limit_state_results(
     found = {}
     for name, state in states.items():
         if state.journey:
-            one, of_word = journey_limit_state(job, name, state, table), _of_one_word(state, ends)
+            one = journey_limit_state(job, name, state, table)
+            # The shares of ends count a failed journey as one that met none of the others.
+            of_word = None if one.runs.missing > 0.0 else _of_one_word(state, ends)
         else:
             one, of_word = _one(study, name, state, runs, fates, of_samples), _of_one_word(state, shares)
         if of_word is not None:

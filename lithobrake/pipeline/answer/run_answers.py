@@ -75,17 +75,6 @@ def answers_of(
     return np.array([flown[key] for key in answered]), np.array([known[key].inputs["bed"] for key in answered])
 
 
-def answers_of_design(
-    design: DrawnDesign, known: Mapping[str, Record], flown: Mapping[str, float]
-) -> tuple[np.ndarray, np.ndarray]:
-    """The same of the runs of a design, with 0 for each lander that is flown to the ground and never touches down."""
-    values, bed = answers_of(design.keys, known, flown)
-    if design.descents is None:
-        return values, bed
-    aloft = np.array(design.beds, dtype=float)[~design.descents.touches_down]
-    return np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])
-
-
 def scope(study: Study) -> Scope:
     """What the runs of a study have in common, and when its flights and journeys end."""
     return Scope(
@@ -105,6 +94,11 @@ def scope(study: Study) -> Scope:
 def why_no_interval(study: Study) -> str | None:
     """Why drawn runs say nothing of other beds and places; None where they do."""
     return scope(study).why_no_interval
+
+
+def is_on_one_ground(study: Study) -> bool:
+    """Whether each bed stands for one body of those that a study allows, so that an answer has the interval of one."""
+    return study.ground is not None and study.ground.unknown != "patchy"
 
 
 def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:

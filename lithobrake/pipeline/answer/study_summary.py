@@ -250,7 +250,7 @@ def _of_landers(job: Job, found: Results) -> Results:
         soils=soil_shares(job, table),
         sky=sky_results(study, folder, table),
         emulated=emulated,
-        aim=aim_results(study, folder, Refits(len(np.unique(table.bed)), table.touchdowns, why_no_interval(study))),
+        aim=aim_results(study, folder, Refits.of_journeys(study, table)),
     )
 
 

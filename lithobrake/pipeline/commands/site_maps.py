@@ -11,7 +11,7 @@ from lithobrake.campaign.single_run import Model
 from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits
-from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
@@ -90,7 +90,7 @@ def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
 
 def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> SiteMap:
     study, runs = job.study, DesignRuns.load(job.folder, JOURNEY_DESIGN)
-    fitted = Refits(len(np.unique(runs.inputs["bed"])), runs.run_count, why_no_interval(study))
+    fitted = Refits.of_journeys(study, JourneyTable.load(job.folder))
     ground, landers = site_grid.SiteGround.of(job, cells), site_grid.follow_sites(job, cells, lander_count)
     latitude, longitude = (one[np.isfinite(one)] for one in site_grid.first_places(job))
     journeys = np.bincount(cells.cell_of(latitude, longitude), minlength=cells.total)
@@ -105,8 +105,8 @@ def _mapped(job: Job, stem: str, cells: EqualAreaCells, lander_count: int) -> Si
         duration_s=study.journey.duration,
         landers=lander_count,
         refits=REFIT_COUNT,
-        beds=fitted.bed_count,
-        touchdowns=fitted.run_count,
+        beds=len(np.unique(runs.inputs["bed"])),
+        touchdowns=runs.run_count,
         # The cells are of equal area on a sphere, which here has the volume of the body.
         area_m2=4.0 * math.pi * (0.75 * shape.volume / math.pi) ** (2.0 / 3.0) / cells.total,
         at_rest=site_grid.all_at_rest(landers, fitted),

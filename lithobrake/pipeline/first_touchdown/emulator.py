@@ -222,7 +222,7 @@ def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -
     [rad] that each row was left in.
     """
     from lithobrake.analysis.confidence import t_quantile
-    from lithobrake.analysis.unseen_event import even_limit
+    from lithobrake.analysis.unseen_event import unseen_limit
     from lithobrake.emulator import law_tables
 
     runs = models[0].runs
@@ -235,7 +235,7 @@ def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -
         output_outcome=runs.outcome_names[runs.output_outcome],
         group_count=groups,
         interval_reach=t_quantile(groups - 1),
-        unseen_limit=even_limit(len(runs.x), groups),
+        unseen_limit=unseen_limit(runs.group),
         bound=dict(bound),
     )
 

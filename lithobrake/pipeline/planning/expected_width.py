@@ -27,7 +27,7 @@ from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil
 from lithobrake.pipeline.planning.expected_time import journey_time, machine_pace, pour_time, run_time
 from lithobrake.pipeline.planning.study_warnings import expected_loss
-from lithobrake.pipeline.sequential_sampling import flown_shares
+from lithobrake.pipeline.sequential_sampling import answers_aloft, flown_shares
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.statements.ends import assumed_at_rest
 from lithobrake.study import Study
@@ -177,12 +177,14 @@ def _missing(study: Study, soil: ExpectedSoil | None, values: np.ndarray) -> flo
 
 
 def _runs(design: DrawnDesign, values: np.ndarray, bed: np.ndarray) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Answers and beds of the runs that there are, and beds of those to come; landers that never touch down are 0."""
-    of_all, aloft = np.array(design.beds, dtype=float), np.empty(0)
-    if design.descents is not None:
-        aloft = of_all[~design.descents.touches_down]
-    there = np.concatenate([values, np.zeros(len(aloft))]), np.concatenate([bed, aloft])
-    left = Counter(of_all.tolist()) - Counter(there[1].tolist())
+    """Answers and beds of the runs that there are, and beds of those to come.
+
+    Landers that never touch down are no runs to come: they are there if the answer is one of them, too.
+    """
+    aloft, bed_of_aloft = answers_aloft(design)
+    left = Counter(np.array(design.beds, dtype=float).tolist()) - Counter([*bed.tolist(), *bed_of_aloft.tolist()])
+    told = np.isfinite(aloft)
+    there = np.concatenate([values, aloft[told]]), np.concatenate([bed, bed_of_aloft[told]])
     return there, np.array(list(left.elements()))
 
 

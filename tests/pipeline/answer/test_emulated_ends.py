@@ -1,9 +1,12 @@
 """Shares of ends narrowed by an emulator: synthetic journeys of known truth, by good and by poor predictions."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, _agrees, _narrowed
+from lithobrake.pipeline.answer.emulated_ends import EmulatedTable, Refits, _agrees, _narrowed
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.journeys.emulated_journeys import COPIES
 from lithobrake.results.run_results import CountedShare
@@ -95,3 +98,15 @@ def test_ends_agree_within_their_intervals_together() -> None:
     assert _agrees(landings, nothing | {REST: share(0.89, 0.08), ESCAPED: share(0.11, 0.08)})
     assert not _agrees(landings, nothing | {REST: share(0.91, 0.08), ESCAPED: share(0.09, 0.08)})
     assert _agrees(landings, nothing | {REST: CountedShare(0, Estimate(0.8, None, None))}) is None
+
+
+def test_a_lander_is_one_case_of_an_event_however_often_it_touches_down(monkeypatch: pytest.MonkeyPatch) -> None:
+    """60 journeys on 12 beds, none of which met it, leave 8.2 %: (1 - q) (2 - q) .. (5 - q) / 5! to the 12th is 0.1."""
+    monkeypatch.setattr("lithobrake.pipeline.answer.emulated_ends.why_no_interval", lambda study: None)
+    asked: Any = SimpleNamespace()
+    numbers = {"touchdowns": np.full(60, 10.0)}
+    table = JourneyTable(np.full(60, REST), np.arange(60) % 12, numbers, np.zeros((60, 3)), np.full(60, ""))
+    nobody, refit = np.zeros(4 * REFITS, dtype=bool), np.arange(4 * REFITS) % REFITS
+    found = Refits.of_journeys(asked, table).share(nobody, ~nobody, refit)
+    assert found.upper == pytest.approx(0.0816, abs=5e-4)
+    assert np.prod((np.arange(1, 6) - found.upper) / np.arange(1, 6)) ** 12 == pytest.approx(0.1)

@@ -1,6 +1,7 @@
 """Limit states of whole journeys, and the mean miss, against laws in closed form."""
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,11 +11,12 @@ import pytest
 from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.mean_over_grounds import mean_over_grounds
 from lithobrake.analysis.subset_simulation import limit_state_met
-from lithobrake.pipeline.answer import journey_limit_states
+from lithobrake.pipeline.answer import journey_limit_states, question_answers
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable
-from lithobrake.pipeline.answer.journey_ends import JourneyTable
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.journey_limit_states import journey_limit_state, rest_values
 from lithobrake.pipeline.answer.mean_miss import mean_miss, offsets
+from lithobrake.pipeline.answer.question_answers import limit_state_results
 from lithobrake.statements.journeys import mean_miss as miss_words
 from lithobrake.statements.limits import limit_state, met_words
 from lithobrake.vocabulary.limit_state import LimitState
@@ -50,7 +52,10 @@ def rested(east: np.ndarray, north: np.ndarray, end: np.ndarray | None = None) -
 def job(monkeypatch: pytest.MonkeyPatch) -> Any:
     """What the answers read of a study of one ground without an emulator and without inputs."""
     study = SimpleNamespace(
-        ground=None, lander=SimpleNamespace(is_ball=False), journey=SimpleNamespace(emulated_count=0), seed=1
+        ground=None,
+        lander=SimpleNamespace(is_ball=False),
+        journey=SimpleNamespace(emulated_count=0, touchdowns=None),
+        seed=1,
     )
     monkeypatch.setattr(journey_limit_states, "why_no_interval", lambda study: None)
     monkeypatch.setattr("lithobrake.pipeline.answer.mean_miss.why_no_interval", lambda study: None)
@@ -95,6 +100,25 @@ def test_who_does_not_rest_is_not_within_and_who_failed_makes_bounds(job: Any) -
     assert missed.probability.value == pytest.approx(60 / known)
 
 
+@pytest.mark.parametrize(("condition", "share"), [("at_rest", (30, 30, 40)), ("not at_rest", (20, 20, 30))])
+def test_a_failed_journey_is_neither_at_rest_nor_not(
+    job: Any, monkeypatch: pytest.MonkeyPatch, condition: str, share: tuple[int, int, int]
+) -> None:
+    """Of 60 landers 30 rest, 20 escape and 10 fail: 30 of 50, and at least 30 and at most 40 of 60."""
+    end = np.repeat(["at_rest", "escaped", "failed"], [30, 20, 10])
+    table = replace(rested(np.zeros(60), np.zeros(60), end), bed=np.arange(60) % 12)
+    job.study.limit_states = SimpleNamespace(conditions=lambda: {"down": condition})
+    for name in ("DesignRuns", "RunFlights", "JourneyTable"):
+        loaded = table if name == "JourneyTable" else SimpleNamespace(fates=None)
+        monkeypatch.setattr(question_answers, name, SimpleNamespace(load=lambda *of, found=loaded: found))
+    monkeypatch.setattr(question_answers, "_values_of_samples", lambda job: {})
+    found = limit_state_results(job, {}, {"at_rest": end_share(table.rests, table.bed)})["down"]
+    met, least, most = share
+    assert found.probability.value == pytest.approx(met / 50)
+    assert found.runs.if_missing == pytest.approx((least / 60, most / 60))
+    assert found.probability.lower < least / 60 < most / 60 < found.probability.upper
+
+
 def test_a_condition_is_decided_by_what_is_known_of_a_journey() -> None:
     end = np.array(["at_rest", "at_rest", "partner", "under_way", "failed", "unknown"])
     numbers = {name: np.array([5.0, 50.0, 5.0, 5.0, NAN, NAN]) for name in ("distance", "time_s")}
@@ -104,12 +128,24 @@ def test_a_condition_is_decided_by_what_is_known_of_a_journey() -> None:
         ("face == +z or face == -z", [1, 0, 0, 0, NAN, NAN]), ("face != +z", [0, 1, 1, 1, NAN, NAN]),
         ("at_rest", [1, 1, 0, 0, NAN, NAN]), ("partner or at_rest", [1, 1, 1, 0, NAN, NAN]),
         ("under_way and distance > 0", [0, 0, 0, 0, NAN, NAN]),
+        ("partner and not at_rest", [0, 0, 1, 0, NAN, NAN]),
         ("distance < 20 and face == +z", [1, 0, 0, 0, NAN, NAN]),
         # Nothing is known of the tilt of any: only the distance decides.
         ("tilt_deg < 5 and distance < 20", [NAN, 0, 0, 0, NAN, NAN]),
     ]  # fmt: skip
     for text, met in expected:
         assert limit_state_met(LimitState.of(text), values).tolist() == pytest.approx(met, nan_ok=True), text
+
+
+@pytest.mark.parametrize(("of_touchdown", "of_journey"), [
+    ("escaped", "escaped and not at_rest"), ("partner", "partner and not at_rest"),
+    ("contacts < 3", "contacts < 3 and at_rest"),
+])  # fmt: skip
+def test_words_of_both_are_of_the_first_touchdown_unless_another_is_of_the_journey(
+    of_touchdown: str, of_journey: str
+) -> None:
+    assert not LimitState.of(of_touchdown).journey
+    assert {*LimitState.of(of_journey).journey} == {of_touchdown.split()[0], "at_rest"}
 
 
 def test_the_emulator_answers_by_the_same_code(job: Any, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,6 +167,9 @@ def test_the_emulator_answers_by_the_same_code(job: Any, monkeypatch: pytest.Mon
     assert found.emulator.upper - found.emulator.lower > 0.05
     assert found.agrees
     assert "the emulator gives" in limit_state("near", found)
+    # Landings that are followed for one touchdown only are no journeys to rest, as those of the emulator are.
+    job.study.journey.touchdowns = 1
+    assert journey_limit_state(job, "near", LimitState.of("distance < 20"), table).agrees is None
     # A tenth of a per cent of the landers lies so far out: the journeys have none, and the emulator tells.
     far = journey_limit_state(job, "far", LimitState.of("distance > 55.8"), table)
     assert (far.source, far.probability.value) == ("runs", 0.0)
@@ -153,6 +192,10 @@ def test_on_unknown_ground_the_answer_has_the_interval_of_one_ground(job: Any) -
     said = limit_state("near", found)
     assert "over the grounds that the study allows" in said
     assert "By kind of ground: fine 100 %" in said
+    # On patches landers of a bed of one kind meet the others.
+    for unknown in ("patchy", "both"):
+        job.study.ground.unknown = unknown
+        assert journey_limit_state(job, "near", LimitState.of("distance < 20"), table).grounds == {}
 
 
 def test_words_are_those_of_the_question(job: Any) -> None:
@@ -195,6 +238,61 @@ def test_a_miss_that_cannot_be_told_from_none_moves_no_aim(job: Any) -> None:
     assert not found.is_distinct
     assert miss_words(found).endswith("No shift of the aim can be distinguished from none.")
     assert journey_limit_state(job, "near", LimitState.of("distance < 20"), table).if_aimed is None
+
+
+def test_of_studies_without_a_miss_at_most_one_in_ten_names_another_aim(job: Any) -> None:
+    """Two tests at 90 % each would do so in 19 of 100: 1 - 0.9 squared."""
+    random = np.random.default_rng(12)
+    tables = (rested(*random.normal(0.0, SIGMA, (2, COUNT))) for _ in range(500))
+    alarms = [miss.is_distinct for table in tables if (miss := mean_miss(job, table)) is not None]
+    assert len(alarms) == 500
+    # 1 - 0.95 squared is 0.0975, with a standard error of 0.013.
+    assert 0.06 < np.mean(alarms) < 0.13
+
+
+def test_on_unknown_ground_the_aim_follows_the_mean_of_one_ground(job: Any) -> None:
+    """Grounds on which landers come down 16 m east or 4 m west: the mean of 6 m is known, and that of one is not."""
+    random = np.random.default_rng(13)
+    east = np.where(BED % 2 == 0, 16.0, -4.0) + random.normal(0.0, 1.0, COUNT)
+    table = rested(east, random.normal(0.0, 1.0, COUNT))
+    for unknown, is_distinct in ((None, True), ("patchy", True), ("everywhere", False), ("both", False)):
+        job.study.ground = None if unknown is None else SimpleNamespace(unknown=unknown)
+        found = mean_miss(job, table)
+        assert found is not None
+        assert found.is_distinct == is_distinct, unknown
+
+
+def test_with_the_mean_on_the_aim_the_interval_is_still_that_of_one_ground(job: Any) -> None:
+    """On every second ground all rest at the mean, and on the others none: one ground gives all or nothing."""
+    away = np.where(np.arange(COUNT) // BEDS % 2 == 0, 40.0, -40.0)
+    table = rested(np.full(COUNT, 100.0), np.where(BED % 2 == 0, 0.0, away))
+    near = LimitState.of("distance < 20")
+    over_beds = journey_limit_state(job, "near", near, table).if_aimed
+    job.study.ground = SimpleNamespace(unknown="everywhere", kind={"sand": None})
+    job.design = SimpleNamespace(grounds=SimpleNamespace(each=[SimpleNamespace(kind="sand")] * BEDS))
+    over_grounds = journey_limit_state(job, "near", near, table).if_aimed
+    assert over_beds is not None
+    assert over_grounds is not None
+    assert over_beds.value == over_grounds.value == 0.5
+    assert (over_beds.lower > 0.25, over_beds.upper < 0.75) == (True, True)
+    assert (over_grounds.lower < 0.05, over_grounds.upper > 0.95) == (True, True)
+
+
+def test_places_are_turned_onto_the_aim_without_stretching_them(job: Any) -> None:
+    """A miss of 1 rad on a ball of 100 m, about whose place arcs are Rayleigh of 24.4 m: 53 % within 30 m of it."""
+    radius, sigma, count = 100.0, 24.4, 4800
+    job.site = SimpleNamespace(aim=(0.0, 0.0), aim_radius=radius)
+    arc = sigma / radius * np.sqrt(-2.0 * np.log1p(-(np.arange(count) + 0.5) / count))
+    way = 2.399963 * np.arange(count)
+    # From the place 1 rad east of the aim: on, east and north.
+    on, east, north = np.cos(arc), np.sin(arc) * np.cos(way), np.sin(arc) * np.sin(way)
+    x, y = (on * math.cos(1.0) - east * math.sin(1.0)), (on * math.sin(1.0) + east * math.cos(1.0))
+    latitude, longitude = np.degrees(np.arcsin(north)), np.degrees(np.arctan2(y, x))
+    table = rested(np.zeros(count), np.zeros(count))
+    table.numbers.update(latitude_deg=latitude, longitude_deg=longitude, distance=radius * np.arccos(x))
+    found = journey_limit_state(job, "near", LimitState.of("distance < 30"), table)
+    assert found.if_aimed is not None
+    assert found.if_aimed.value == pytest.approx(1.0 - math.exp(-0.5 * (30.0 / sigma) ** 2), abs=0.01)
 
 
 def test_landers_all_around_the_body_have_no_mean(job: Any) -> None:

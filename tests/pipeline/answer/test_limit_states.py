@@ -57,6 +57,8 @@ def test_a_common_limit_state_is_told_by_the_runs_and_a_rare_one_by_the_emulator
     # Of 150 landings on 12 beds, the same with 12 or with 13 on each.
     assert even_limit(156, 12) < rare["tail_limit"] < even_limit(144, 12)
     assert rare["upper"] >= rare["tail_limit"]
+    # It is the landings and the beds that limit it.
+    assert "; 150 landings on 12 beds cannot resolve probabilities below " in rare["statement"]
 
 
 def test_words_agree_with_the_shares_of_the_study(results: StudyResults, found: dict[str, Any]) -> None:

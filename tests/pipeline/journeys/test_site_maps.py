@@ -94,6 +94,17 @@ def test_what_the_emulator_does_not_know_is_not_answered(site_map: SiteMap) -> N
     assert sum(cell.journeys for cell in site_map.cells) == 48
 
 
+def test_an_end_that_no_lander_has_is_limited_by_the_journeys_and_not_by_their_touchdowns(site_map: SiteMap) -> None:
+    """48 journeys on 12 beds: (1 - q) (2 - q) (3 - q) (4 - q) / 4! to the 12th is 0.1."""
+    assert site_map.touchdowns > 48
+    partners = [cell.ends.partner for cell in site_map.cells if cell.ends is not None and cell.unknown == 0.0]
+    assert partners
+    for one in partners:
+        assert one.value == 0.0
+        assert one.upper is not None
+        assert math.prod((j - one.upper) / j for j in range(1, 5)) ** 12 == pytest.approx(0.1)
+
+
 def test_a_cell_with_too_many_unknown_ends_is_hatched_and_says_why() -> None:
     cells = EqualAreaCells.of(4)
     end = np.full((4, LANDERS), "at_rest", dtype="<U10")
