@@ -8,14 +8,10 @@ import numpy as np
 
 from lithobrake.analysis.confidence import t_quantile
 from lithobrake.analysis.share_estimate import share_estimate
-from lithobrake.scoring.observed_landing import ENDS, NUMBERS, ObservedLanding, Place
+from lithobrake.geometry.attitude import directions
+from lithobrake.scoring.observed_landing import ENDS, NUMBERS, ObservedLanding
 from lithobrake.scoring.predicted_landings import UNKNOWN, PredictedLandings
-from lithobrake.scoring.proper_scores import (
-    crps,
-    energy_score,
-    log_score,
-    probability_below,
-)
+from lithobrake.scoring.proper_scores import crps, energy_score, log_score, probability_below
 from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.quantities import SIDES
@@ -86,7 +82,7 @@ def _known(same: PredictedLandings, observed: ObservedLanding) -> Iterator[tuple
     if observed.place is not None:
         yield "place", np.isfinite(same.direction.sum(axis=1))
     if observed.face is not None:
-        yield "face", np.array([face != "" for face in same.face], dtype=np.bool_)
+        yield "face", np.asarray(same.face != "", dtype=np.bool_)
 
 
 def _quantity_score(quantity: str, sample: PredictedLandings, observed: ObservedLanding) -> LandingScore:
@@ -98,10 +94,10 @@ def _quantity_score(quantity: str, sample: PredictedLandings, observed: Observed
         estimate = _logarithmic(sample, _face_hits(sample.face, observed.face), len(SIDES))
     elif quantity == "place":
         assert observed.place is not None
-        radius, error = observed.place.radius, observed.place.error
+        there = observed.place
         kind, unit = ENERGY, "m"
-        score = energy_score(radius * sample.direction, radius * _direction(observed.place), error)
-        estimate = _with_interval(sample, score.of)
+        place = there.radius * directions(there.latitude_deg, there.longitude_deg)
+        estimate = _with_interval(sample, energy_score(there.radius * sample.direction, place, there.error).of)
     else:
         measured, values = observed.numbers[quantity], sample.numbers[quantity]
         kind, unit = CRPS, NUMBERS[quantity]
@@ -144,11 +140,6 @@ def _with_interval(sample: PredictedLandings, score: Score) -> Estimate:
     error = math.sqrt((count - 1) / count * float(np.square(without - without.mean()).sum()))
     reach = t_quantile(count - 1) * error
     return Estimate(value, max(value - reach, 0.0), value + reach)
-
-
-def _direction(place: Place) -> Floats:
-    latitude, longitude = np.radians([place.latitude_deg, place.longitude_deg])
-    return np.array([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)])
 
 
 def score_lines(found: Sequence[LandingScore]) -> list[str]:

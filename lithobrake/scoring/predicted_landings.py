@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.files.reading import CsvTable, read_table
+from lithobrake.geometry.attitude import directions
 from lithobrake.scoring.observed_landing import ENDS, NUMBERS
 from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.file_names import JOURNEYS_FILE
@@ -84,11 +85,8 @@ def _weights(file: Path, table: CsvTable) -> Floats:
 
 def _directions(file: Path, table: CsvTable) -> Floats:
     """Unit vectors of the places, body-fixed, shape [count, 3]."""
-    latitude = np.radians(_column(file, table, "latitude_deg", -90.0, 90.0))
-    longitude = np.radians(_column(file, table, "longitude_deg", -360.0, 360.0))
-    return np.column_stack(
-        [np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)]
-    )
+    latitude = _column(file, table, "latitude_deg", -90.0, 90.0)
+    return directions(latitude, _column(file, table, "longitude_deg", -360.0, 360.0))
 
 
 def _column(file: Path, table: CsvTable, name: str, least: float, most: float = math.inf) -> Floats:

@@ -140,7 +140,7 @@ def _if_aimed(job: Job, state: LimitState, met: np.ndarray, table: JourneyTable,
     So it would be if all places were turned about the centre until this mean is on the aim point. On unknown ground it
     has the interval of one ground. None for other limit states, and where the mean cannot be told from the aim point.
     """
-    miss = mean_miss(job, table)
+    miss = None if state.radius is None else mean_miss(job, table)
     if state.radius is None or miss is None or not miss.is_distinct:
         return None
     places = table.of_rest("latitude_deg"), table.of_rest("longitude_deg")

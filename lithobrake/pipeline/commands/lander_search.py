@@ -73,8 +73,7 @@ def search_lander(
     count: most windows; size [m]: longest extent of the lander, None: by the study file. Raises ValueError for a table
     that is none, a lander without a size, a study without landers at rest, and where no image shows any place.
     """
-    from lithobrake.smallbody.image_windows import image_windows, recognised
-    from lithobrake.smallbody.shape import Shape
+    from lithobrake.smallbody import Shape, image_windows, recognised
 
     given = read_images(images)
     shape = Shape(*results.body_shape)
@@ -98,12 +97,10 @@ def search_lander(
     first = _held_out_windows(bed, shown, toward, imager.field, len(windows))
     found = [_found(first, number, bed) for number in range(len(windows))]
     middle = np.array([places[window.shown].mean(axis=0) for window in windows])
-    centre = np.degrees(
-        [np.arctan2(middle[:, 2], np.hypot(middle[:, 0], middle[:, 1])), np.arctan2(middle[:, 1], middle[:, 0])]
-    ).T
+    centre = np.column_stack(shape.latitude_longitude(middle))
     distance = np.linalg.norm(given.orbiter[[window.image for window in windows]] - middle, axis=1)
     latitude, longitude = table["latitude_deg"][rest], table["longitude_deg"][rest]
-    shows = _first_window(windows, shown, toward, imager.field)
+    shows = _first_window(windows, len(places))
     ever = float(shown.any(axis=1).mean())
     return LanderSearch(windows, given, latitude, longitude, shows, found, centre, distance, ever)
 
@@ -120,16 +117,15 @@ def _held_out_windows(bed: np.ndarray, shown: np.ndarray, toward: Floats, field:
     for fold in range(min(FOLDS, int(unit.max()) + 1)):
         held_out = unit % FOLDS == fold
         chosen = image_windows(shown, toward, (~held_out).astype(np.float64), field, count)
-        first[held_out] = _first_window(chosen, shown, toward, field)[held_out]
+        first[held_out] = _first_window(chosen, len(bed))[held_out]
     return first
 
 
-def _first_window(windows: "list[ImageWindow]", shown: np.ndarray, toward: Floats, field: float) -> np.ndarray:
-    """The first of the windows that shows each place, -1 for none, [count]."""
-    first = np.full(len(shown), -1)
+def _first_window(windows: "list[ImageWindow]", count: int) -> np.ndarray:
+    """The first of the windows that shows each place, -1 for none, [count]; those without weight count, too."""
+    first = np.full(count, -1)
     for number, window in enumerate(windows):
-        inside = toward[:, window.image] @ window.boresight >= np.cos(0.5 * field) - 1e-12
-        first[(first < 0) & shown[:, window.image] & inside] = number
+        first[(first < 0) & window.shown] = number
     return first
 
 
