@@ -14,6 +14,7 @@ from lithobrake.scoring.predicted_landings import UNKNOWN, PredictedLandings
 from lithobrake.scoring.proper_scores import crps, energy_score, log_score, probability_below
 from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.quantities import SIDES
 
 LOGARITHMIC, CRPS, ENERGY = "logarithmic", "CRPS", "energy"
@@ -158,7 +159,7 @@ def score_lines(found: Sequence[LandingScore]) -> list[str]:
 
 def _row(one: LandingScore) -> str:
     said = f"{one.score.value:.3g}{_bounds(one.score)}  {one.prediction}, {one.sample_count} landings"
-    return said if one.below is None else f"{said}; {one.below:.0%} of the prediction is below the observation"
+    return said if one.below is None else f"{said}; {percent(one.below)} of the prediction is below the observation"
 
 
 def _bounds(score: Estimate) -> str:

@@ -18,7 +18,7 @@ from lithobrake.vocabulary.array_types import Floats
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.given_numbers import whole_number
-from lithobrake.vocabulary.number_words import with_interval
+from lithobrake.vocabulary.number_words import percent, with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd
 from lithobrake.vocabulary.plain_text import show
 
@@ -223,7 +223,7 @@ def search_lines(search: LanderSearch) -> list[str]:
     lines = [
         f"{count} of {len(search.images.time)} images show the lander with a probability of "
         f"{with_interval(search.found[-1])}, given that it is at rest on the body; all of them together could show "
-        f"{search.ever:.0%}."
+        f"{percent(search.ever)}."
     ]
     lines += [
         f"  {rank + 1}. {search.images.time[window.image]}: toward {search.centre[rank][0]:.1f} deg, "
