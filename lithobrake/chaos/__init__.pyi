@@ -9,7 +9,9 @@ from .bootstrap import sobol_intervals as sobol_intervals
 from .counts import smolyak_count as smolyak_count
 from .counts import tensor_count as tensor_count
 from .counts import term_count as term_count
-from .design import GaussianCopula as GaussianCopula
+from .dependence import GaussianCopula as GaussianCopula
+from .dependence import ShapleyEffects as ShapleyEffects
+from .dependence import shapley_effects as shapley_effects
 from .design import christoffel as christoffel
 from .design import christoffel_weights as christoffel_weights
 from .design import d_optimal as d_optimal

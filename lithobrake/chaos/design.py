@@ -1,20 +1,18 @@
-"""Designs by count, by grid or for a basis, and points of inputs that depend on each other."""
+"""Designs by count, by grid or for a basis."""
 
 import warnings
 from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from lithobrake.chaos.basis import Indices, basis_matrix, checked_points, multi_index_set
 from lithobrake.chaos.counts import term_count
-from lithobrake.chaos.distributions import Distribution, Normal
+from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.numerical_distributions import checked_inputs
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.constants import LEAST_PROBABILITY
-from lithobrake.vocabulary.given_numbers import numbers, random_numbers, sample_count, whole_number
+from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
 
 # Points of one scrambled Sobol sequence: its digits have no more places.
 MOST_SOBOL = 2**30
@@ -42,7 +40,7 @@ def sobol_sequence(inputs: Mapping[str, Distribution], count: int, seed: int = 0
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="The balance properties of Sobol")
         uniforms = engine.random(size)
-    return _physical(distributions, uniforms)
+    return from_uniforms(distributions, uniforms)
 
 
 def latin_hypercube(inputs: Mapping[str, Distribution], count: int, seed: int = 0) -> Array:
@@ -50,7 +48,7 @@ def latin_hypercube(inputs: Mapping[str, Distribution], count: int, seed: int = 
     distributions = checked_inputs(inputs)
     generator, size = random_numbers(seed), sample_count("count", count, len(distributions))
     columns = [(generator.permutation(size) + generator.random(size)) / size for _ in distributions]
-    return _physical(distributions, np.column_stack(columns))
+    return from_uniforms(distributions, np.column_stack(columns))
 
 
 def sample_inputs(inputs: Mapping[str, Distribution], count: int, seed: int) -> Array:
@@ -67,60 +65,11 @@ def sample_inputs(inputs: Mapping[str, Distribution], count: int, seed: int) -> 
     return np.column_stack(columns) if columns else np.empty((count, 0))
 
 
-def _physical(distributions: Mapping[str, Distribution], uniforms: Array) -> Array:
+def from_uniforms(distributions: Mapping[str, Distribution], uniforms: Array) -> Array:
+    """Points in physical units from probabilities, each [count, input_count]."""
     # A probability of exactly 0 or 1 would be infinite for an unbounded input.
     inner = np.clip(uniforms, 2.0**-54, 1.0 - 2.0**-53)
     return np.column_stack([entry.ppf(inner[:, k]) for k, entry in enumerate(distributions.values())])
-
-
-class GaussianCopula:
-    """Inputs with given distributions and Spearman rank correlations [input_count, input_count].
-
-    `fit` takes its points like any others. The expansion's own moments and indices are those of independent inputs;
-    those of dependent ones are moments of its values at many dependent points.
-    Raises ValueError unless the matrix is symmetric with ones on its diagonal and can be that of a Gaussian copula.
-    Source: [Nataf-1962]; [Lebrun-2009]; r = 2 sin(pi rho / 6), [Kruskal-1958], for the normal correlation.
-    """
-
-    def __init__(self, inputs: Mapping[str, Distribution], rank_correlation: ArrayLike) -> None:
-        self.inputs = checked_inputs(inputs)
-        matrix = numbers("rank_correlation", rank_correlation)
-        size = len(self.inputs)
-        if matrix.shape != (size, size) or not np.allclose(matrix, matrix.T, rtol=0.0, atol=1e-12):
-            raise ValueError(f"rank_correlation has shape {matrix.shape}, but must be symmetric, [{size}, {size}]")
-        if not np.all(np.diag(matrix) == 1.0) or np.abs(matrix).max() > 1.0:
-            raise ValueError("rank_correlation must have ones on its diagonal and nothing outside -1 to 1")
-        normal = 2.0 * np.sin(np.pi * matrix / 6.0)
-        # 2 sin(pi / 6) is 1 only up to rounding.
-        np.fill_diagonal(normal, 1.0)
-        smallest = float(np.linalg.eigvalsh(normal)[0])
-        if smallest <= 1e-10:
-            raise ValueError(
-                f"rank_correlation gives normals whose correlation matrix has the eigenvalue {smallest:.3g}, but all "
-                "must be above 0: weaken the correlations that contradict each other"
-            )
-        self._factor = np.linalg.cholesky(normal)
-
-    @one_thread()
-    def sobol_sequence(self, count: int, *, seed: int = 0) -> Array:
-        """Dependent points from a scrambled Sobol sequence, physical units, [count, input_count]."""
-        independent = {name: Normal(0.0, 1.0) for name in self.inputs}
-        uniforms = special.ndtr(sobol_sequence(independent, count, seed=seed) @ self._factor.T)
-        return _physical(self.inputs, uniforms)
-
-    def dependent(self, points: ArrayLike) -> Array:
-        """Dependent points from independent ones of the same inputs, both physical, [count, input_count].
-
-        Each column follows from those up to it, the first stays as it is, and a row from that row alone.
-        """
-        independent = numbers("points", points)
-        uniforms = [entry.cdf(independent[:, k]) for k, entry in enumerate(self.inputs.values())]
-        normal = special.ndtri(np.clip(np.column_stack(uniforms), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY))
-        # Not by a matrix product, whose rounding depends on how many rows there are.
-        together = np.stack([(normal * row).sum(axis=1) for row in self._factor], axis=1)
-        found = _physical(self.inputs, special.ndtr(together))
-        found[:, 0] = independent[:, 0]
-        return found
 
 
 def christoffel_weights(inputs: Mapping[str, Distribution], x: Array, indices: Indices) -> Array:

@@ -1,5 +1,6 @@
 """The one entry, from runs to an expansion, and the default way of fitting."""
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from lithobrake.chaos import degree_selection
 from lithobrake.chaos.basis import multi_index_set
+from lithobrake.chaos.dependence import dependent_inputs
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.gaussian_process import GaussianProcess, expansion_of, families_for, fit_process, fresh_germs
 from lithobrake.chaos.scores import replicates, with_noise
@@ -143,6 +145,7 @@ def fit(
     q_norm: hyperbolic index set, None is 1 (sparse methods without a degree choose). max_degrees: highest degree of
     each input, and weights: of the points [count], both for "ols". Rows of y that are all NaN are dropped and counted.
     progress: called with the number of outputs that are fitted, and that of all.
+    Warns where inputs depend on each other in the runs, as moments and indices are those of independent ones.
     Raises ValueError for fewer points than terms, rank deficiency and data that `checked_training` refuses.
     Source: [Landings-PCE], Eqs 13 to 17.
     """
@@ -150,6 +153,7 @@ def fit(
         method = "ols"
     _check_request(degree, method, max_degrees, weights)
     training = checked_training(inputs, x, y, output_names=output_names, weights=weights)
+    together = _told_together(training)
     outputs = degree_selection.with_progress(range(training.y.shape[1]), progress)
     extra: dict[str, Any] = {}
     if method is None:
@@ -165,7 +169,21 @@ def fit(
         solutions = [process_solution(training, k) for k in outputs]
     else:
         solutions = [solve_sparse(training, k, method, degree=degree, q_norm=q_norm) for k in outputs]
-    return _assembled(training, solutions, extra)
+    return _assembled(training, solutions, extra | together)
+
+
+def _told_together(training: Training) -> dict[str, Any]:
+    """For the report the pairs of inputs that depend on each other in the runs, with a warning where there are any."""
+    pairs = [] if training.weights is not None else dependent_inputs(training.inputs, training.x)
+    if pairs:
+        worst = max(pairs, key=lambda pair: abs(pair[2]))
+        warnings.warn(
+            f"{worst[0]} and {worst[1]} depend on each other in the runs (rank correlation {worst[2]:.2f}), but "
+            "moments and Sobol indices of an expansion are those of independent inputs: take shapley_effects, and "
+            "moments of its values at dependent points",
+            stacklevel=4,
+        )
+    return {"dependent_inputs": [list(pair) for pair in pairs]}
 
 
 def _check_request(degree: Any, method: str | None, max_degrees: Any, weights: Any) -> None:

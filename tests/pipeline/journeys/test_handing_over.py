@@ -103,7 +103,7 @@ def test_a_flight_begins_with_what_a_touchdown_left_and_keeps_its_spin_among_the
     angle = np.full(COUNT, math.degrees(math.atan2(0.004, 0.006)))
     spin = 0.01 * random.normal(size=(COUNT, 3))
     landers = Landers(
-        body=body, duration=4.0 * 3600.0, gravity="table", most=2, threads=1, start=start,
+        body=body, duration=4.0 * 3600.0, gravity="exact", most=2, threads=1, start=start,
         mass=np.full(COUNT, body.mass), spin_period=period, position=position, axes=impact_frame(velocity, up),
         speed=np.linalg.norm(velocity, axis=1), incidence_deg=angle.copy(), mean_incidence_deg=angle.copy(),
         spin=spin.copy(),
