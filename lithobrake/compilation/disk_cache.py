@@ -124,14 +124,16 @@ class DiskCache:
         try:
             with open_regular(path) as file:
                 # Asked of the open file: what has this name may change meanwhile.
-                ours, whole = _is_ours(os.fstat(file.fileno())), file.read()
+                told = os.fstat(file.fileno())
+                # In two pieces, as a gravity table is too large to be copied on the way.
+                content, signature = file.read(max(told.st_size - _SIGNATURE_LENGTH, 0)), file.read()
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as error:
             reason = error.strerror if isinstance(error, OSError) else "it is no regular file"
             log.warning("%s cannot be read (%s): it is made again.", path, reason)
             return None
-        content, signature = whole[:-_SIGNATURE_LENGTH], whole[-_SIGNATURE_LENGTH:]
+        ours = _is_ours(told)
         if ours and hmac.compare_digest(signature, self._signature(name, content)):
             self._note_use(path)
             return content
@@ -225,7 +227,9 @@ class DiskCache:
 
     def _signature(self, name: str, content: bytes) -> bytes:
         # With its name: a whole file in the place of another is wrong too.
-        return hmac.digest(self._key, name.encode() + b"\0" + content, "sha256")
+        signature = hmac.new(self._key, name.encode() + b"\0", "sha256")
+        signature.update(content)
+        return signature.digest()
 
     def _do_without(self, reason: str, remedy: str = _REMEDY) -> None:
         """Say once that nothing is kept, and why."""

@@ -52,13 +52,16 @@ class Grid(NamedTuple):
         start = np.zeros(int(size.prod()) + 1, dtype=np.int32)
         # Counted first and placed then, so that the facets of all cells stand in one array.
         _sort(first, last, plane, size, start, np.empty(0, dtype=np.int32))
-        occupied = (start[1:] > 0).reshape(size)
-        start = np.cumsum(start, dtype=np.int32)
+        gap = distance_transform_cdt((start[1:] == 0).reshape(size), metric="chessboard").reshape(-1)
+        gap -= 1
+        np.maximum(gap, 0, out=gap)
+        np.cumsum(start, out=start)
         facets = np.empty(start[-1], dtype=np.int32)
         _sort(first, last, plane, size, start, facets)
-        start = np.concatenate([np.zeros(1, dtype=np.int32), start[:-1]])
-        gap = np.maximum(distance_transform_cdt(~occupied, metric="chessboard") - 1, 0).astype(np.int32)
-        return cls(lower, edge, size, start, facets, gap.reshape(-1))
+        # Each cell stands where the next one began.
+        start[1:] = start[:-1].copy()
+        start[0] = 0
+        return cls(lower, edge, size, start, facets, gap)
 
 
 @compiled
