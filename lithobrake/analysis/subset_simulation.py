@@ -23,6 +23,9 @@ ALSO_OF_CAPTURED = ("contact_duration", "penetration", "peak_acceleration", "ene
 FAR, NEAR = 1e30, 1e-30
 # Share of the points of a level that make the next one.
 LEVEL_SHARE = 0.1
+# The share of the first points that fail from which on levels need more points than plain Monte Carlo for the same
+# scatter, however the first points fell (docs/reliability.md).
+NO_GAIN = 0.05
 # Share of moves to aim for. Source: [Papaioannou-2015], section 3.3.
 BEST_ACCEPTANCE = 0.44
 # How far a first move goes, as a part of the standard deviation of the seeds.
@@ -162,7 +165,8 @@ def subset_simulation(
     model is an input of its own. kept: inputs that a chain keeps from its start, as those that pick a bed: a model that
     jumps when they change would refuse nearly every move. groups: labels [count] of points, by kept inputs alone, where
     points have something in common that is itself a draw, as landings on one bed have. points_per_level: a multiple of
-    ten, 20 at least. most_levels: after which a failure that no point has shown is not looked for further.
+    ten, 20 at least. most_levels: after which a failure that no point has shown is not looked for further. Where 5 % of
+    the first points fail or more, they are counted, which is plain Monte Carlo: levels would gain nothing.
     Raises ValueError for other counts, and for margins that are no numbers.
     """
     dimension, points_per_level = whole_number("dimension", dimension, 1), _points_per_level(points_per_level)
@@ -177,7 +181,8 @@ def subset_simulation(
     for number in range(most_levels + 1):
         order = np.argsort(values, kind="stable")
         threshold = max(0.5 * float(values[order[chain_count - 1]] + values[order[chain_count]]), 0.0)
-        threshold = threshold if number < most_levels else 0.0
+        counted = number == 0 and float(np.mean(values <= 0.0)) >= NO_GAIN
+        threshold = threshold if number < most_levels and not counted else 0.0
         below = values <= threshold
         if not below.any():
             break

@@ -90,6 +90,9 @@ def limit_state(name: str, found: "LimitStateResult") -> str:
     return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
 
 
+COUNTED = "It is too common for subset simulation to gain anything: for a narrower interval raise journey.count."
+
+
 def rare_limit_state(name: str, found: Mapping[str, Any]) -> str:
     """The probability of a rare limit state; found: the content of its file."""
     said = f"no landing met it down to the last level, a probability of {number(found['rarest'], 1)}"
@@ -101,7 +104,8 @@ def rare_limit_state(name: str, found: Mapping[str, Any]) -> str:
     landings = f"{found['landings']} landings in {counted(found['levels'], 'level')} on {found['beds']} beds"
     why = f" {found['why']}" if found["why"] else ""
     warning = f" {found['warning']}" if found["warning"] and found["lower"] is not None else ""
-    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{why}{warning}"
+    common = f" {COUNTED}" if found["reached"] and found["levels"] == 1 else ""
+    return f"{name} ({found['condition']}): {said}; by {landings}{lost}.{common}{why}{warning}"
 
 
 def few_origins(origins: float, bed_count: int) -> str | None:

@@ -140,6 +140,14 @@ def test_a_failure_that_is_common_takes_one_level() -> None:
     assert found.probability.lower < stats.norm.sf(0.5) < found.probability.upper
 
 
+@pytest.mark.parametrize(("exact", "levels"), [(0.07, 1), (0.03, 2)])
+def test_levels_that_would_gain_nothing_are_not_made(exact: float, levels: int) -> None:
+    """Of 1000 points 0.07 fail within 0.05 to 0.09, 0.03 within 0.01 to 0.05: three standard deviations and more."""
+    found = subset_simulation(lambda points: stats.norm.isf(exact) - points[:, 0], 1, points_per_level=1000)
+    assert len(found.thresholds) == levels
+    assert found.probability.lower < exact < found.probability.upper
+
+
 def test_a_failure_that_cannot_be_has_probability_0_and_says_that_it_was_not_reached() -> None:
     found = subset_simulation(lambda points: np.ones(len(points)), 2)
     assert (found.probability.value, found.probability.lower, found.reached) == (0.0, 0.0, False)

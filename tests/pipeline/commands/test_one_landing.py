@@ -276,7 +276,7 @@ SPREAD, MIDDLE = 0.3, 0.1
 RARE = 1e-3
 LIMIT = MIDDLE * math.exp(SPREAD * stats.norm.isf(RARE))
 CONDITIONS = {"fast": f"speed_out > {LIMIT!r}", "never": "speed_out > 10", "gone": "not returns",
-    "hard": "peak_acceleration > 50"}  # fmt: skip
+    "hard": "peak_acceleration > 50", "common": f"speed_out > {0.8 * LIMIT!r}"}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -389,6 +389,13 @@ def test_landings_without_a_known_end_are_counted_and_said(tmp_path: Path) -> No
     assert "with unknown outcome count as not meeting it" in found["statement"]
 
 
+def test_what_is_common_is_counted_and_the_sentence_says_so(tmp_path: Path) -> None:
+    found = rare(tmp_path / "out", "common", landing_count=100)
+    assert (found["levels"], found["landings"]) == (1, 100)
+    assert 0.05 <= found["lower"] + found["upper"]
+    assert found["statement"].endswith("gain anything: for a narrower interval raise journey.count.")
+
+
 def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> None:
     found = rare(tmp_path / "out", "never", landing_count=20)
     assert (found["probability"], found["reached"], found["warning"]) == (0.0, False, None)
@@ -399,7 +406,7 @@ def test_what_never_happens_is_not_looked_for_without_end(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize(("name", "count", "words"), [
-    ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, never, gone, hard\)"),
+    ("slow", 200, r"NAME is 'slow'; allowed: a name of \[limit_states\] \(fast, never, gone, hard, common\)"),
     ("gone", 200, r"limit_states\.gone uses returns, which is true or false"),
     ("hard", 20, r"limit_states\.hard uses peak_acceleration, which no landing has"),
     ("fast", 25, r"--landings is 25; allowed: multiples of 10 from 20"),
