@@ -10,8 +10,8 @@ import pytest
 from .syntax_trees import syntax_tree
 
 PACKAGE = Path(__file__).parents[1] / "lithobrake"
-# Both are public: what a grain is, and what a body is.
-SAME_NAME_ON_PURPOSE = {"Shape"}
+# Both are public: what a grain is, and what a body is; a study as it was checked, and one that is written in Python.
+SAME_NAME_ON_PURPOSE = {"Shape", "Study"}
 # Lines beside the docstring; a kernel, which a call would slow down, may have twice as many.
 LONGEST = 40
 LONGEST_KERNEL = 80

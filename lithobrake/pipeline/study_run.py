@@ -1,7 +1,10 @@
 """Running a study file in a folder, and writing the report of a folder again."""
 
 import os
+import shutil
+import tempfile
 import time
+import weakref
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -27,6 +30,7 @@ from lithobrake.pipeline.stages import stages_until
 from lithobrake.pipeline.study_folder import NAME, StudyFolder, refuse_others_folder
 from lithobrake.report.plotted_study import PlottedStudy
 from lithobrake.study import StudySource
+from lithobrake.vocabulary.plain_text import in_lines
 
 
 def run(
@@ -42,7 +46,8 @@ def run(
 
     study: path of a study file, the name of a study that comes with the package ("quick"; `lithobrake examples` lists
     them), or tables as a dict, in which relative paths count from the current folder and numbers may be NumPy's.
-    out: folder of the study; None: runs/NAME, after the name of the file; tables need one.
+    out: folder of the study; None: runs/NAME, after the name of the file. Tables have no name: without a folder they
+    run in a temporary one, which goes with the results; `results.save(folder)` keeps it.
     workers: number of processes; None: one a core. They import the script that calls this only where it defines the
     model: such a script calls it under `if __name__ == "__main__":`.
     model: a callable that can be pickled, `(inputs, seed) -> {"outcome": ..., "outputs": {...}}`, which makes the
@@ -55,27 +60,85 @@ def run(
     Raises ValueError for a study or folder that is refused, too few runs with outputs, a model that cannot be pickled.
     """
     refuse_while_importing()
+    # Before the study is read, as the checks of a study depend on whether a function makes its touchdowns.
+    function = None if model is None else function_identity(model)
+    if isinstance(study, Mapping):
+        source = StudySource.of_tables(study, function)
+    else:
+        source = StudySource.read(Path(study), function)
+    return _run(source, out, model, workers, report, progress)
+
+
+class Study:
+    """A study that is written in Python: a keyword for each table and key at the top of a study file.
+
+    `Study(lander={"shape": "box", ...}, grain={...}, seed=2).run()`; docs/study_file.md has them all. Numbers may be
+    NumPy's, and relative paths count from the current folder.
+    """
+
+    def __init__(self, *, model: Model | None = None, **tables: Any) -> None:
+        """Check the tables as those of a study file are.
+
+        model: makes the touchdowns in place of the soil, as in lithobrake.run(). Raises ValueError with a sentence for
+        each problem.
+        """
+        self._model = model
+        self._source = StudySource.of_tables(tables, None if model is None else function_identity(model))
+
+    def run(
+        self,
+        out: str | os.PathLike[str] | None = None,
+        *,
+        workers: int | None = None,
+        report: bool = True,
+        progress: StudyProgress | None = None,
+    ) -> PlottedStudy:
+        """Run the study to its end and return its results; all arguments are those of lithobrake.run()."""
+        refuse_while_importing()
+        return _run(self._source, out, self._model, workers, report, progress)
+
+    def __repr__(self) -> str:
+        """Name its title and its tables."""
+        title = self._source.study.title
+        return in_lines(f"Study{f' {title!r}' if title else ''} of {', '.join(self._source.tables)}", "  ")
+
+
+def _run(
+    source: StudySource,
+    out: str | os.PathLike[str] | None,
+    model: Model | None,
+    workers: int | None,
+    report: bool,
+    progress: StudyProgress | None,
+) -> PlottedStudy:
+    """Run a study that was checked; see run()."""
     lacking = [name for name in ("begin", "say", "progress") if progress and not hasattr(progress, name)]
     if lacking:
         raise ValueError(
             f"progress is {progress!r}, which has no {', '.join(lacking)}; allowed: None, or what "
             "lithobrake.progress.study_progress() gives"
         )
-    # Before the study is read, as the checks of a study depend on whether a function makes its touchdowns.
-    function = None if model is None else function_identity(model)
-    if isinstance(study, Mapping):
-        if out is None:
-            raise ValueError("out is None, and a study of tables has no name that its folder could have; give a folder")
-        source = StudySource.of_tables(study, function)
-    else:
-        source = StudySource.read(Path(study), function)
-    folder = Path("runs") / source.stem if out is None else Path(out)
     # An empty text, as of a variable that is not set, would mean the current folder.
     if not str(out).strip():
-        raise ValueError(f"out is {str(out)!r}; allowed: the path of a folder; leave it out for runs/{source.stem}")
-    until = "report" if report else "summary"
-    run_study(source, folder, until=until, worker_count=workers, model=model, shown=progress)
-    return PlottedStudy(folder)
+        raise ValueError(f"out is {str(out)!r}; allowed: the path of a folder; leave it out for {_default(source)}")
+    until, is_temporary = "report" if report else "summary", out is None and source.path is None
+    folder = Path(tempfile.mkdtemp(prefix="lithobrake-")) if is_temporary else Path(out or Path("runs") / source.stem)
+    try:
+        run_study(source, folder, until=until, worker_count=workers, model=model, shown=progress)
+        results = PlottedStudy(folder)
+    except BaseException:
+        if is_temporary:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
+    if is_temporary:
+        # With the last of what reads in it, or as Python ends.
+        weakref.finalize(results, shutil.rmtree, folder, ignore_errors=True)
+    return results
+
+
+def _default(source: StudySource) -> str:
+    """The folder of a study for which none is given, in words."""
+    return "a temporary folder" if source.path is None else f"runs/{source.stem}"
 
 
 def _say_solver(command: str | None, shown: StudyProgress) -> None:

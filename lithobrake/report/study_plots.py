@@ -1,11 +1,12 @@
 """Figures of a study one by one, on axes of matplotlib, for a notebook or a paper; drawn by what draws the report."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from lithobrake.report.figures.place_map import draw_map
 from lithobrake.report.figures.run_figures import draw_parts, draw_rebounds, part_handles
@@ -13,9 +14,11 @@ from lithobrake.report.figures.share_figures import RestSpread, draw_counts, dra
 from lithobrake.report.figures.style import figure_style
 from lithobrake.report.pages import first_touchdown, study_page
 from lithobrake.results.page_data import PageData, PageJourneys, page_results
+from lithobrake.results.run_results import VarianceParts
 from lithobrake.statements.journeys import end_rows
 from lithobrake.statements.labels import end_words
-from lithobrake.vocabulary.plain_text import in_lines
+from lithobrake.vocabulary.outcomes import JourneyEnd
+from lithobrake.vocabulary.plain_text import closest, in_lines
 
 if TYPE_CHECKING:
     from lithobrake.results import StudyResults
@@ -24,9 +27,10 @@ OF_REST = "share of those at rest [%]"
 
 
 class StudyPlots:
-    """Figures of a finished study; each takes axes to draw on, or makes a figure of its own, and returns the axes.
+    """Figures of a finished study, drawn by what draws the report; `dir(plot)` lists those that this study has.
 
-    A figure of its own has the look of the report; axes that are given keep the settings of whoever made them.
+    Most take axes to draw on, or make a figure of their own, and return the axes; those of several panels return a
+    figure. One of its own has the look of the report; axes that are given keep the settings of whoever made them.
     Raises ValueError for a figure that the study has not, and for a study that has not run to its end.
     """
 
@@ -41,18 +45,18 @@ class StudyPlots:
         Of a study of first touchdowns: the next impacts of its samples. Where they lie far apart: the half of the body
         around the aim point.
         """
-        page = self._page
-        if page.samples is not None and not page.to_rest:
+        page = self._having("map")
+        if page.journeys is None or (page.samples is not None and not page.to_rest):
             shown = first_touchdown.impacts(page)
         else:
-            shown = study_page.end_map(page, self._journeys("map"))
+            shown = study_page.end_map(page, page.journeys)
         with _axes(ax, (6.2, 6.2)) as axes:
             draw_map(axes, shown)
         return axes
 
     def ends(self, ax: Axes | None = None) -> Axes:
         """How the journeys end, or what becomes of the landings after the first touchdown: shares with intervals."""
-        page = self._page
+        page = self._having("ends")
         with _axes(ax, (7.2, 2.4)) as axes:
             if page.to_rest:
                 draw_shares(axes, study_page.end_shares(page), "all journeys")
@@ -74,9 +78,7 @@ class StudyPlots:
 
     def sides(self, ax: Axes | None = None) -> Axes:
         """Which side of the lander is down at rest, by its own axes: shares with intervals; a ball has none."""
-        shares = study_page.side_shares(self._journeys("sides"))
-        if not shares:
-            raise ValueError(_NO_SIDES.format("sides"))
+        shares = study_page.side_shares(_journeys(self._having("sides")))
         with _axes(ax, (7.2, 2.4)) as axes:
             draw_shares(axes, shares, "those at rest")
         return axes
@@ -89,25 +91,32 @@ class StudyPlots:
         """How many contacts with the ground a journey has, by how it ended."""
         return self._counts("contacts", "contacts with the ground", ax)
 
-    def variance(self, ax: Axes | None = None) -> Axes:
-        """Parts of the variance of the ends of the journeys, or of the outputs of first touchdowns."""
-        page = self._page
-        shares, rows = page.results.variance_shares, first_touchdown.RETURNS_ROW
-        if page.to_rest:
-            shares = {name: one for name, one in page.results.end_variance_shares.items() if one}
-            rows = end_rows(page.results)
-        known = [one for one in shares.values() if one]
-        if not known:
-            raise ValueError(f"plot.variance shows parts of a variance, which {self._study.folder} has none of")
+    def sensitivity(self, ax: Axes | None = None) -> Axes:
+        """Which part of the variance each cause has: of the ends of the journeys, or of the outputs of first
+        touchdowns.
+        """
+        page = self._having("sensitivity")
+        shares, rows = _parts(page), end_rows(page.results) if page.to_rest else first_touchdown.RETURNS_ROW
         with _axes(ax, (7.2, 1.4 + 0.7 * len(shares))) as axes:
             draw_parts(axes, shares, rows)
-            axes.legend(handles=part_handles(known), loc="upper left", bbox_to_anchor=(1.0, 1.0))
+            handles = part_handles([one for one in shares.values() if one])
+            axes.legend(handles=handles, loc="upper left", bbox_to_anchor=(1.0, 1.0))
         return axes
+
+    def grounds(self) -> Figure:
+        """Fraction at rest, time to rest and upright axis against the size of the grains, on unknown ground."""
+        page = self._having("grounds")
+        return _whole(lambda: study_page.draw_sizes(page))
+
+    def sobol(self) -> Figure:
+        """First-order Sobol indices of the first touchdown, by the screening expansion."""
+        expansion = self._having("sobol").expansion
+        assert expansion is not None
+        return _whole(lambda: first_touchdown.draw_sobol(expansion))
 
     def rebounds(self, ax: Axes | None = None) -> Axes:
         """Speed and elevation after the first touchdown of each lander that left."""
-        page = self._page
-        self._journeys("rebounds")
+        page = self._having("rebounds")
         landings = first_touchdown.landings_of_runs(page)
         with _axes(ax, (5.2, 4.2)) as axes:
             draw_rebounds(axes, landings, first_touchdown.quantiles_of_runs(page))
@@ -118,23 +127,24 @@ class StudyPlots:
     def _page(self) -> PageData:
         return page_results(self._study)
 
-    def _journeys(self, name: str) -> PageJourneys:
-        """The drawn landers. Raises ValueError where none was drawn."""
-        found = self._page.journeys
-        if found is None:
-            raise ValueError(
-                f"plot.{name} shows drawn landers, which {self._study.folder} has none of; it has plot.map and "
-                "plot.ends"
-            )
-        return found
+    def _names(self) -> list[str]:
+        """The figures that this study has."""
+        return [name for name, (_, has) in _SHOWN.items() if has(self._page)]
+
+    def _having(self, name: str) -> PageData:
+        """What the page shows. Raises ValueError where this figure is none of it."""
+        what, has = _SHOWN[name]
+        if not has(self._page):
+            raise ValueError(f"plot.{name} shows {what}, which {self._study.folder} has none of; it has {self._list()}")
+        return self._page
+
+    def _list(self) -> str:
+        return ", ".join(f"plot.{name}" for name in self._names())
 
     def _spread(self, name: str, spread: Callable[[PageJourneys], RestSpread | None], ax: Axes | None) -> Axes:
         """A distribution function over the landers at rest."""
-        found = spread(self._journeys(name))
-        if found is None:
-            raise ValueError(_NO_SIDES.format(name))
-        if not len(found.values):
-            raise ValueError(f"plot.{name} shows landers at rest, and none of {self._study.folder} is")
+        found = spread(_journeys(self._having(name)))
+        assert found is not None
         with _axes(ax, (5.2, 3.6)) as axes:
             draw_spread(axes, found)
             axes.set_ylabel(OF_REST)
@@ -142,20 +152,74 @@ class StudyPlots:
 
     def _counts(self, name: str, label: str, ax: Axes | None) -> Axes:
         """Bars of a count over the journeys."""
-        table = self._journeys(name).table
+        page = self._having(name)
+        table = _journeys(page).table
         with _axes(ax, (5.2, 3.6)) as axes:
-            draw_counts(axes, table[name], table["end"], end_words(self._page.results.site))
+            draw_counts(axes, table[name], table["end"], end_words(page.results.site))
             axes.set(xlabel=label, ylabel="journeys")
             axes.legend()
         return axes
 
+    def __dir__(self) -> list[str]:
+        """The names of the figures that this study has; none for one that has not run to its end."""
+        # Who completes a name is told nothing; a figure that is asked for says what is wrong.
+        with suppress(ValueError):
+            return self._names()
+        return []
+
+    def __getattr__(self, name: str) -> NoReturn:
+        """Name the figures where there is none of this name. Raises AttributeError."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise AttributeError(
+            f"plot.{name} is no figure{closest(name, _SHOWN)}; {self._study.folder} has {self._list()}"
+        )
+
     def __repr__(self) -> str:
         """Name the figures."""
-        names = [name for name in vars(type(self)) if not name.startswith("_")]
-        return in_lines(f"StudyPlots of {self._study.folder}: {', '.join(f'{name}()' for name in names)}", "  ")
+        return in_lines(f"StudyPlots of {self._study.folder}: {', '.join(f'{name}()' for name in dir(self))}", "  ")
 
 
-_NO_SIDES = "plot.{} shows sides of the lander, and a ball has none"
+def _journeys(page: PageData) -> PageJourneys:
+    """The drawn landers of a study that has some."""
+    assert page.journeys is not None
+    return page.journeys
+
+
+def _parts(page: PageData) -> dict[str, VarianceParts | None]:
+    """The parts of each variance, by its row."""
+    if page.to_rest:
+        return {name: one for name, one in page.results.end_variance_shares.items() if one}
+    return dict(page.results.variance_shares)
+
+
+def _has_landers(page: PageData) -> bool:
+    return page.journeys is not None
+
+
+def _has_rest(page: PageData) -> bool:
+    return page.journeys is not None and bool((page.journeys.table["end"] == JourneyEnd.AT_REST).any())
+
+
+def _has_sides(page: PageData) -> bool:
+    return page.journeys is not None and _has_rest(page) and page.journeys.rest.tilt_deg is not None
+
+
+# What each figure shows, and whether a study has it.
+_SHOWN: dict[str, tuple[str, Callable[[PageData], bool]]] = {
+    "map": ("drawn landers or samples", lambda page: _has_landers(page) or page.samples is not None),
+    "ends": ("ends", lambda page: True),
+    "times": ("landers at rest", _has_rest),
+    "distances": ("landers at rest", _has_rest),
+    "sides": ("sides of landers at rest", _has_sides),
+    "tilts": ("sides of landers at rest", _has_sides),
+    "touchdowns": ("drawn landers", _has_landers),
+    "contacts": ("drawn landers", _has_landers),
+    "sensitivity": ("parts of a variance", lambda page: any(_parts(page).values())),
+    "grounds": ("unknown ground ([ground])", lambda page: page.results.ground_curve is not None),
+    "rebounds": ("drawn landers", _has_landers),
+    "sobol": ("an expansion ([expansion])", lambda page: page.expansion is not None),
+}
 
 
 @contextmanager
@@ -169,3 +233,12 @@ def _axes(ax: Axes | None, size: tuple[float, float]) -> Iterator[Axes]:
     with figure_style():
         _, axes = pyplot.subplots(figsize=size, layout="constrained")
         yield axes
+
+
+def _whole(draw: Callable[[], Figure]) -> Figure:
+    """A figure of several panels."""
+    # A notebook shows figures once this is there.
+    import matplotlib.pyplot  # noqa: F401
+
+    with figure_style():
+        return draw()

@@ -74,7 +74,6 @@ def _smallest_bed(one: "BedNumbers", *, walls: bool) -> str:
 
 
 def landing(data: "PageData") -> str:
-    """A landing."""
     if data.landing is None:
         return ""
     attributes, time = data.landing.attributes, data.landing.time

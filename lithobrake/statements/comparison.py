@@ -103,7 +103,6 @@ def caption(comparison: StudyComparison) -> str:
 
 
 def table_note(comparison: StudyComparison) -> str:
-    """The table of the answers."""
     return (
         f"With {intervals(comparison.level)}. Correlation: of the two runs of a pair. Landings saved: factor "
         "by which an unpaired comparison needs more landings for the same interval."

@@ -224,7 +224,6 @@ def quantile(one: Estimate, size: float = 1.0) -> str:
 
 
 def two_digits(value: float) -> str:
-    """A number to two digits."""
     return number(value, 2)
 
 

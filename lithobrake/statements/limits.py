@@ -207,7 +207,6 @@ def _rivals(table: "AimResults", best: int) -> str:
 
 
 def option(table: "AimResults", place: int) -> str:
-    """An option in words."""
     values = zip(table.names, table.aims[place].values, strict=True)
     return ", ".join(f"{name} = {table.value_words(name, value)}" for name, value in values)
 

@@ -170,7 +170,6 @@ def significant_inputs(level: float, *, has_any: bool) -> str:
 
 
 def limit_states(states: "Mapping[str, LimitStateResult | RareLimitState]") -> str:
-    """The probabilities of the limit states."""
     return " ".join(state.statement for state in states.values())
 
 

@@ -147,7 +147,6 @@ def agreement_caption(found: SiteMap) -> str:
 
 
 def table_note(found: SiteMap) -> str:
-    """The table of the sites."""
     return (
         f"Middle of each site [deg]. Fractions and medians with {intervals(found.level)}; slope and light "
         f"as the mean over the site, and the span of {percent(0.9)} of its area. Journeys: of the study, with their "

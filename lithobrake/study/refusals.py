@@ -84,8 +84,7 @@ def _sentence(error: Mapping[str, Any], known_keys: Mapping[str, tuple[str, ...]
 
 class Named(Protocol):
     @property
-    def name(self) -> str:
-        """The name."""
+    def name(self) -> str: ...
 
 
 Known = TypeVar("Known", bound=Named)

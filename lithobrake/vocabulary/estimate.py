@@ -80,7 +80,6 @@ def without_underscore(name: str) -> str:
 
 
 def key_of(field: "Field[Any]") -> str:
-    """The key of a field."""
     return without_underscore(field.name)
 
 

@@ -16,6 +16,9 @@ from unittest.mock import patch
 import matplotlib.pyplot as plt
 import pytest
 
+from lithobrake.results import open_study
+from lithobrake.study import read_study
+
 from ..command_line import lithobrake
 from ..quick_studies import blank_pictures, one_process
 
@@ -96,6 +99,19 @@ def test_a_solver_of_ones_own_is_run_once_and_replaced(tmp_path: Path) -> None:
     assert "69 runs, 69 of them known before" in second
     # Restitution times the cosine of the incidence, which a polynomial of the third degree follows closely.
     assert number(r"velocity_out_z: wrong by ([\d.]+) %", first) < 0.5
+
+
+def test_a_study_without_a_file_is_run_shown_and_kept(tmp_path: Path) -> None:
+    with commands_here():
+        said = printed("study_in_python", tmp_path)
+    assert "study.toml: lander.mas is not a known key; did you mean mass?" in said
+    assert re.search(r"^\d+ % \(90 % interval .*\(8 journeys, \d+ simulated landings, 2 beds\)", said, re.MULTILINE)
+    assert "['contacts', 'distances', 'ends', 'map', " in said
+    assert "plot.grounds shows unknown ground ([ground]), which" in said
+    assert (tmp_path / "box.png").read_bytes().startswith(b"\x89PNG")
+    kept = open_study(tmp_path / "runs/box")
+    assert kept.journeys.row_count == 8
+    assert read_study(tmp_path / "runs/box/study.toml").journey.count == 8
 
 
 def test_a_shape_of_ones_own_holds_and_loses_landers(tmp_path: Path) -> None:

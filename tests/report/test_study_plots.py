@@ -28,23 +28,40 @@ def test_a_figure_of_its_own_has_the_look_of_the_report(first_folder: Path, monk
     plot = lithobrake.open_study(first_folder).plot
     axes = plot.map()
     assert axes.spines["left"].get_edgecolor() == matplotlib.colors.to_rgba(STYLE["axes.edgecolor"])
-    assert plot.variance(Figure().subplots()).spines["bottom"].get_edgecolor() == matplotlib.colors.to_rgba("red")
+    assert plot.sensitivity(Figure().subplots()).spines["bottom"].get_edgecolor() == matplotlib.colors.to_rgba("red")
     pyplot.close(axes.figure)
 
 
-def test_a_figure_that_a_study_lacks_is_refused_in_a_sentence(paper_folder: Path, tmp_path: Path) -> None:
+def test_a_figure_that_a_study_lacks_is_refused_with_those_it_has(paper_folder: Path, tmp_path: Path) -> None:
     plot = lithobrake.open_study(paper_folder).plot
+    assert dir(plot) == ["ends", "map", "sobol"]
     assert plot.map(Figure().subplots()).has_data()
-    with pytest.raises(ValueError, match=r"^plot\.times shows drawn landers, which .*; it has plot\.map"):
+    has = r"; it has plot\.map, plot\.ends, plot\.sobol$"
+    with pytest.raises(ValueError, match=rf"^plot\.times shows landers at rest, which .* has none of{has}"):
         plot.times()
-    with pytest.raises(ValueError, match=r"^plot\.variance shows parts of a variance, which .* has none of"):
-        plot.variance()
+    with pytest.raises(ValueError, match=rf"^plot\.sensitivity shows parts of a variance, which .*{has}"):
+        plot.sensitivity()
+    with pytest.raises(AttributeError, match=r"^plot\.sobel is no figure; did you mean sobol\?; .* has plot\.map, "):
+        plot.sobel  # noqa: B018
     (tmp_path / "summary.json").write_text("{}")
+    unfinished = lithobrake.open_study(tmp_path).plot
+    assert dir(unfinished) == []
     with pytest.raises(ValueError, match=r"lacks study\.toml"):
-        lithobrake.open_study(tmp_path).plot.map()
+        unfinished.map()
 
 
-NAMES = ("map", "ends", "times", "distances", "touchdowns", "contacts", "tilts", "sides", "variance", "rebounds")
+def test_a_figure_of_several_panels_is_that_of_the_page(asked_folder: Path) -> None:
+    study = lithobrake.open_study(asked_folder)
+    rings, screening = study.plot.sobol().axes, study.results.expansion.screening
+    parts = [(wedge.theta2 - wedge.theta1) / 360 for wedge in rings[0].patches]
+    first = list(screening.sobol_first["speed_out"].values())
+    # The rest is that of interactions.
+    assert parts == pytest.approx([*first, 1 - sum(first)], abs=1e-6)
+
+
+NAMES = (
+    *("map", "ends", "times", "distances", "touchdowns", "contacts", "tilts", "sides", "sensitivity", "rebounds"),
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -55,6 +72,7 @@ def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, asked_folder: P
     # The half of a body has a title in place of axes.
     assert axes.get_xlabel() or (name == "map" and axes.get_title())
     assert f"{name}()" in repr(study.plot)
+    assert set(dir(study.plot)) == {*NAMES, "sobol"}
 
 
 def widths(axes: Axes) -> dict[str, float]:

@@ -1,8 +1,10 @@
 """A study from Python: run with a function in place of the soil, opened again, its tables as objects."""
 
 import copy
+import gc
 import subprocess
 import sys
+import tempfile
 from html import escape
 from pathlib import Path
 
@@ -114,8 +116,8 @@ def test_the_same_call_makes_nothing_again_and_another_study_is_refused_the_fold
 
 def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -> None:
     tables, out = models.small_study(), tmp_path / "out"
-    with pytest.raises(ValueError, match="out is None"):
-        lithobrake.run(tables, model=models.bounce)
+    with pytest.raises(ValueError, match="leave it out for a temporary folder"):
+        lithobrake.run(tables, " ", model=models.bounce)
     with pytest.raises(ValueError, match="cannot be sent to a process"):
         lithobrake.run(tables, out, model=lambda inputs, seed: {})
     with pytest.raises(ValueError, match="keep one of the two"):
@@ -125,6 +127,43 @@ def test_what_cannot_be_run_is_refused_before_anything_is_made(tmp_path: Path) -
     with pytest.raises(ValueError, match=r"impact\.speed is -1; allowed: above 0"):
         lithobrake.run(wrong, out, model=models.bounce)
     assert not out.exists()
+
+
+def test_a_study_of_python_gives_the_bits_of_its_tables_and_goes_with_its_results(
+    results: StudyResults, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    study = lithobrake.Study(**models.small_study(), model=models.bounce)
+    assert repr(study).startswith("Study 'Ball on a hard plate")
+    found = study.run(workers=1, report=False)
+    assert found.folder.parent == tmp_path
+    np.testing.assert_array_equal(found.runs["speed_out"], results.runs["speed_out"])
+    kept = found.save(tmp_path / "kept")
+    with pytest.raises(ValueError, match="which is there already; allowed: a new path"):
+        found.save(tmp_path / "kept")
+    plot = found.plot
+    del found
+    gc.collect()
+    assert "map()" in repr(plot)
+    del plot
+    gc.collect()
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+    np.testing.assert_array_equal(kept.runs["speed_out"], results.runs["speed_out"])
+
+
+def test_a_study_of_python_is_checked_as_its_file_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tables = models.small_study()
+    with pytest.raises(ValueError, match=r"^study\.toml: lander\.mas is not a known key; did you mean mass\?"):
+        lithobrake.Study(**tables | {"lander": {"mas": 1.0, **tables["lander"]}}, model=models.bounce)
+    with pytest.raises(ValueError, match=r"landr is not a known key; did you mean lander\?"):
+        lithobrake.Study(**tables, landr={}, model=models.bounce)
+    with pytest.raises(ValueError, match=r"impact\.speed is -1; allowed: above 0"):
+        lithobrake.Study(**tables | {"impact": tables["impact"] | {"speed": -1.0}}, model=models.bounce)
+    # What fails as it runs leaves nothing behind.
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with pytest.raises(ValueError, match="a lander that leaves moves outwards"):
+        lithobrake.Study(**tables, model=models.contradicts_itself).run(workers=1, report=False)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_model_has_inputs_of_its_own_and_no_grain_stands_in_its_way(tmp_path: Path) -> None:

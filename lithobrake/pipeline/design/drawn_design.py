@@ -260,7 +260,6 @@ class DrawnDesign:
 
     @cached_property
     def grounds(self) -> BedGrounds:
-        """The ground of each bed."""
         return BedGrounds(self.site, self.inputs, self.known_beds or self.study.bed_count)
 
     def _rows_of_points(self, beds: Sequence[int], x: np.ndarray) -> list[Row]:

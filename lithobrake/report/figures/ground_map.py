@@ -184,7 +184,6 @@ def mark_site(axes: Axes, x: float, y: float) -> None:
 
 
 def region_style(region: RestRegion) -> Literal["-", "--"]:
-    """Style of the edge of a region."""
     return "-" if region.share < LARGE_SHARE else "--"
 
 

@@ -63,7 +63,7 @@ def _why(data: PageData) -> PageSection:
             plots.append(variance_plot(data))
     if found is not None:
         words = expansion.sobol(found, data.study)
-        plots.append(Plot("sobol", "What matters", words, lambda: _draw_sobol(found)))
+        plots.append(Plot("sobol", "What matters", words, lambda: draw_sobol(found)))
         tables.append(expansion_tables.sobol_table(found))
     return PageSection("Why", plots, tables)
 
@@ -219,7 +219,7 @@ def _draw_counts(data: PageExpansion, page: PageData) -> "Figure":
     return count_figure(table.input_counts, table.levels, tensor, smolyak, designs)
 
 
-def _draw_sobol(data: PageExpansion) -> "Figure":
+def draw_sobol(data: PageExpansion) -> "Figure":
     screening = data.results.screening
     names = tuple(screening.inputs)
     first = {output: np.array([screening.sobol_first[output][name] for name in names]) for output in PAPER_OUTPUTS}

@@ -119,7 +119,7 @@ def _to_rest(data: PageData, journeys: PageJourneys) -> list[PageSection]:
     why = [Plot("end_variance", title, words.end_variance(results), lambda: _draw_ends(data)), variance_plot(data)]
     if results.ground_curve is not None:
         caption = grounds.curve_caption()
-        why = [Plot("grounds", "The answer against the size of the grains", caption, lambda: _draw_sizes(data)), *why]
+        why = [Plot("grounds", "The answer against the size of the grains", caption, lambda: draw_sizes(data)), *why]
     return [
         PageSection("Where", where, said=[miss] if (miss := words.mean_miss(rest.miss)) else []),
         PageSection("When", when, [journey_tables.rest_table(journeys)]),
@@ -231,7 +231,7 @@ def _of_rest(journeys: PageJourneys, name: str) -> np.ndarray:
     return values
 
 
-def _draw_sizes(data: PageData) -> "Figure":
+def draw_sizes(data: PageData) -> "Figure":
     """How the journeys end against the size of the grains."""
     results, journeys = data.results, data.journeys
     assert journeys is not None

@@ -51,7 +51,6 @@ def input_cells(name: str, law: Mapping[str, Any]) -> list[str]:
 
 
 def designs_table(data: PageExpansion) -> PageTable:
-    """The runs of each design."""
     rows = []
     for name, design in data.results.designs.items():
         outcomes = ", ".join(f"{count} {outcome.replace('_', ' ')}" for outcome, count in design.outcomes.items())

@@ -12,6 +12,7 @@ from lithobrake.pipeline.commands.one_lander import landing_inputs
 from lithobrake.pipeline.design import bed_grounds
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.inferred_study import InferredStudy
+from lithobrake.report.plotted_study import PlottedStudy
 from lithobrake.results import StudyResults
 from lithobrake.study import check_tables, load_tables
 from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE
@@ -41,7 +42,7 @@ def touchdown(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
+def found(tmp_path_factory: pytest.TempPathFactory) -> PlottedStudy:
     return lithobrake.run(tables(), tmp_path_factory.mktemp("ground") / "out", workers=1, model=touchdown)
 
 
@@ -97,6 +98,15 @@ def test_the_page_shows_the_answer_against_the_size_of_the_grains(found: StudyRe
     assert "The answer against the size of the grains" in page
     assert "By kind of ground" in page
     assert "one of these, unknown which" in page
+
+
+def test_the_figure_of_the_grounds_is_drawn_by_its_name(found: PlottedStudy) -> None:
+    assert "grounds" in dir(found.plot)
+    curve = found.results.ground_curve
+    assert curve is not None
+    drawn = found.plot.grounds().axes[0].lines[0]
+    assert drawn.get_xdata() == pytest.approx(curve.grain_size_m)
+    assert drawn.get_ydata() == pytest.approx([100.0 * one.value for one in curve.at_rest])
 
 
 def test_on_patchy_ground_a_lander_that_hops_meets_other_beds(tmp_path: Path) -> None:
