@@ -24,7 +24,7 @@ from lithobrake.study import Study
 from lithobrake.study.design_sections import SkyBody
 from lithobrake.study.limit_state_checks import option_states
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION, REFIT_COUNT
-from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.estimate import LEVEL, Estimate
 from lithobrake.vocabulary.file_names import TOUCHDOWNS_FILE
 from lithobrake.vocabulary.journey_names import JOURNEY_WORDS
 from lithobrake.vocabulary.limit_state import LimitState
@@ -177,11 +177,13 @@ def all_at_rest(landers: SiteLanders, fitted: Refits) -> Estimate | None:
     return share_of_known(end == JourneyEnd.AT_REST, end != UNKNOWN_END, refit, fitted)
 
 
-def share_of_known(met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted: Refits) -> Estimate:
+def share_of_known(
+    met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted: Refits, level: float = LEVEL
+) -> Estimate:
     """Share of the landers of known end that have met an event, all [lander_count]; bounds hold for all landers."""
     everyone = np.ones(len(met), dtype=bool)
-    least, most = (fitted.share(one, everyone, refit) for one in (met, met | ~known))
-    return Estimate(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper)
+    least, most = (fitted.share(one, everyone, refit, level) for one in (met, met | ~known))
+    return Estimate(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper, level)
 
 
 def site_states(study: Study) -> dict[str, LimitState]:

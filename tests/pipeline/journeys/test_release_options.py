@@ -38,7 +38,7 @@ def test_offsets_go_up_north_and_east_of_the_mean_release() -> None:
 
 def test_all_options_have_the_same_landers_and_move_as_the_offsets() -> None:
     design, count = DrawnDesign(study_of()), 2 * REFITS
-    landers = option_landers(design)
+    landers = option_landers(design, design.study.aim.aims(), count)
     assert len(landers.end) == 3 * count
     # Landers that the study has not followed, each with its refit.
     assert (landers.number.reshape(3, count) == COUNT + np.arange(count)).all()
