@@ -153,7 +153,7 @@ def site_cells(
             **dict(zip(("latitude_deg", "longitude_deg"), middles[number].tolist(), strict=True)),
             **dict(zip(("south_deg", "north_deg", "west_deg", "east_deg"), bounds[number].tolist(), strict=True)),
             unknown=float(unknown[number]),
-            beyond=_beyond(landers.beyond[number]),
+            beyond=beyond_words(landers.beyond[number]),
             ends=_ends(landers, number, fitted, states) if answered[number] else None,
             not_worse=number in best,
             slope_deg=_spread(ground.slope_deg[number]),
@@ -223,7 +223,7 @@ def _not_worse(landers: SiteLanders, answered: np.ndarray, fitted: Refits) -> tu
     return best_choice(rests, fitted.bed_count, answered).not_worse
 
 
-def _beyond(beyond: np.ndarray) -> str:
+def beyond_words(beyond: np.ndarray) -> str:
     """What impacts of landers were beyond, in words, the most frequent first."""
     met = Counter(beyond[beyond != ""].tolist())
     return ", ".join(WORDS[name] for name, _ in met.most_common())
