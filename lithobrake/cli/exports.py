@@ -211,8 +211,8 @@ def requirement(
     source = StudySource.read(study)
     from lithobrake.files.atomic import refuse_existing
     from lithobrake.pipeline import (
-        grid_of_ranges,
         find_requirement,
+        grid_of_ranges,
         requirement_files,
         requirement_lines,
         write_requirement,

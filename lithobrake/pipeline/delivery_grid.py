@@ -77,12 +77,11 @@ class GridLanders:
         count: int,
     ) -> "GridLanders":
         """Landers that have been followed to their ends; count: deliveries."""
-        columns = (landers.time, landers.ways_from_aims, landers.latitude, landers.longitude)
-        columns += (landers.touchdowns, landers.path_length)
-        numbers = {
-            name: delivered.of_all(np.asarray(one, dtype=float))
-            for name, one in zip(REST_NUMBERS, columns, strict=True)
-        }
+        columns = (
+            *(landers.time, landers.ways_from_aims, landers.latitude, landers.longitude),
+            *(landers.touchdowns.astype(float), landers.path_length),
+        )
+        numbers = {name: delivered.of_all(one) for name, one in zip(REST_NUMBERS, columns, strict=True)}
         met = limit_state_met(state, rest_values(delivered.ends(landers).astype(str), numbers))
         down = np.zeros(len(delivered.end), dtype=bool)
         down[delivered.place] = True

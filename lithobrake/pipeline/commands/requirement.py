@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lithobrake.analysis.unseen_event import limit_of_runs
 from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.campaign.single_run import Model
 from lithobrake.files.atomic import atomic_path, write_rows
@@ -100,6 +101,7 @@ def _found(job: Job, name: str, asked: Asked, lander_count: int, simulated_count
     fitted = Refits.of_journeys(job.study, table)
     if fitted.why is not None:
         raise ValueError(f"the study gives no interval, and a requirement is met by one. {fitted.why}")
+    _refuse_unreachable(asked, fitted)
     deliveries = required_deliveries(job, asked, follow_deliveries(job, asked, lander_count), fitted)
     corners = region_corners(asked, deliveries)
     units = input_units()
@@ -120,6 +122,16 @@ def _found(job: Job, name: str, asked: Asked, lander_count: int, simulated_count
         beds=fitted.bed_count,
         one_ground=is_on_one_ground(job.study),
     )
+
+
+def _refuse_unreachable(asked: Asked, fitted: Refits) -> None:
+    """Raise ValueError where so few journeys could not show the probability even if all of them met the limit state."""
+    most = 1.0 - limit_of_runs(fitted.run_count, fitted.bed_count, asked.level)
+    if asked.required > most:
+        raise ValueError(
+            f"probability is {asked.required:g}, and the journeys of the study, on {fitted.bed_count} beds, can show "
+            f"at most {most:.3g} with a confidence of {asked.level:g}; lower it, or follow more journeys (journey.count)"
+        )
 
 
 def _asked(
@@ -219,7 +231,7 @@ def grid_of_ranges(ranges: Sequence[str]) -> dict[str, tuple[float, ...]]:
             )
         if key in found:
             raise ValueError(f"--over names {key} twice; allowed: each parameter once; leave one out")
-        found[key] = tuple(np.linspace(*ends, count).tolist())
+        found[key] = tuple(np.linspace(ends[0], ends[1], count).tolist())
     return found
 
 
