@@ -54,15 +54,14 @@ def admissible_edge(values: Sequence[float], found: Sequence[Estimate | None], r
         return AdmissibleEdge(False, why=FEW)
     x, p = np.array([value for value, _, _ in known]), np.array([one.value for _, one, _ in known])
     lower, upper = np.array([bounds for _, _, bounds in known]).T
-    fits = {falls: _monotone(p, falls=falls) for falls in (True, False)}
-    falls = bool(np.sum((fits[True] - p) ** 2) <= np.sum((fits[False] - p) ** 2))
+    curves = np.array([p, lower, upper])
+    fits = {falls: np.array([_monotone(curve, falls=falls) for curve in curves]) for falls in (True, False)}
+    # Of a probability that stays, the ends of its interval may still say which way it goes.
+    falls = bool(np.sum((fits[True] - curves) ** 2) <= np.sum((fits[False] - curves) ** 2))
     fit = fits[falls]
-    if ((fit < lower) | (fit > upper)).any():
+    if ((fit[0] < lower) | (fit[0] > upper)).any():
         return AdmissibleEdge(falls, why=RISES_AND_FALLS)
-    value, sure, possible = (
-        _crossing(x, _monotone(curve, falls=falls), required, falls=falls) for curve in (p, lower, upper)
-    )
-    return AdmissibleEdge(falls, value, sure, possible)
+    return AdmissibleEdge(falls, *(_crossing(x, curve, required, falls=falls) for curve in fit))
 
 
 def _monotone(y: Array, *, falls: bool) -> Array:

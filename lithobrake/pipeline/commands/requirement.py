@@ -130,7 +130,8 @@ def _refuse_unreachable(asked: Asked, fitted: Refits) -> None:
     if asked.required > most:
         raise ValueError(
             f"probability is {asked.required:g}, and the journeys of the study, on {fitted.bed_count} beds, can show "
-            f"at most {most:.3g} with a confidence of {asked.level:g}; lower it, or follow more journeys (journey.count)"
+            f"at most {most:.3g} with a confidence of {asked.level:g}; lower it, or follow more journeys "
+            "(journey.count)"
         )
 
 

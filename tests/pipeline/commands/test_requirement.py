@@ -3,6 +3,7 @@
 import csv
 from copy import deepcopy
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,19 +12,20 @@ from typer.testing import CliRunner
 
 from lithobrake.cli import app
 from lithobrake.pipeline import find_requirement, grid_of_ranges, requirement_lines, write_requirement
+from lithobrake.pipeline.answer.emulated_ends import Refits
+from lithobrake.pipeline.delivery_grid import Asked, GridLanders, required_deliveries, requirement_edges
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.journeys.delivery_options import option_landers
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.report.figures.requirement_figure import requirement_figure
 from lithobrake.results.requirement_results import Requirement
-from lithobrake.results.site_results import MOST_UNKNOWN
 from lithobrake.study import StudySource
+from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import ERRORS
 from lithobrake.vocabulary.requirement import Verdict
 
 from ..few_terms import REFITS
-from ..journeys.bouncing_lander import bounce, journey_tables
 from ..journeys.test_release_options import study_of
 from .resting_lander import NEAR, SIGMA, admissible_errors, rest, resting_tables
 
@@ -147,22 +149,24 @@ def test_the_picture_has_a_cell_for_each_delivery_and_the_edge_with_both_ends(fo
     assert crossing == pytest.approx([edge.value, edge.sure, edge.possible], abs=1e-3)
 
 
-def test_impacts_beyond_the_training_range_have_no_result(journeys_folder: Path) -> None:
-    """Delivered elsewhere on the body, most landers meet another gravity and slope than those of the study did."""
-    tables = journey_tables(limit_states={"near": "distance < 60"})
-    source = StudySource.of_tables(tables, function_identity(bounce))
-    grid = {"delivery.latitude_deg": (-60.0, 10.0, 60.0), "delivery.longitude_deg": (-150.0, -60.0, 30.0, 120.0)}
-    found = find_requirement(
-        source, journeys_folder, "near", grid, probability=0.3, lander_count=2 * REFITS, worker_count=1, model=bounce
-    )
-    outside = [one for one in found.deliveries if one.verdict is Verdict.OUTSIDE]
-    assert 0 < len(outside) < 12
-    for one in found.deliveries:
-        assert (one in outside) == (one.unknown > MOST_UNKNOWN)
-        assert (one.beyond == "") == (one.unknown == 0.0)
-    own = next(one for one in found.deliveries if one.values == (10.0, -60.0))
-    assert own.unknown == 0.0
-    assert f"{len(outside)} have no result" in requirement_lines(found)[0]
+def test_deliveries_whose_impacts_are_beyond_the_training_range_have_no_result() -> None:
+    """Of 100 landers eleven, ten and none are of unknown outcome, and all others meet it: bounds hold for all."""
+    met, beyond = np.ones((3, 100)), np.full((3, 100), "", dtype="<U24")
+    met[0, :11], met[1, :10], beyond[0, :11], beyond[1, :10] = np.nan, np.nan, "surface.gravity", "impact.speed"
+    refit = np.tile(np.arange(100) % REFITS, (3, 1))
+    landers = GridLanders(met, refit % 12, refit, np.ones_like(refit, dtype=bool), beyond)
+    asked = Asked(LimitState.of("distance < 30"), 0.9, 0.9, {ERRORS: (1.0, 2.0, 3.0)})
+    fitted, job = Refits(12, tuple([20] * 12), None), SimpleNamespace(study=SimpleNamespace(ground=None))
+    first, second, third = required_deliveries(job, asked, landers, fitted)
+    assert (first.verdict, first.beyond, first.unknown) == (Verdict.OUTSIDE, "gravity", 0.11)
+    # Nine in ten at least, and that with an error.
+    assert (second.verdict, second.beyond) == (Verdict.OPEN, "impact speed")
+    assert second.probability.lower < 0.9
+    assert (third.verdict, third.beyond) == (Verdict.MET, "")
+    edge = requirement_edges(asked, [first, second, third])[0].edge
+    # The first value tells nothing of it.
+    assert not edge.falls
+    assert 2.0 < edge.sure <= 3.0
 
 
 @pytest.mark.parametrize(("asked", "said"), [
