@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
+from scipy import linalg, special
 
 from lithobrake.chaos.basis import Indices, basis_matrix, checked_points, multi_index_set
 from lithobrake.chaos.counts import term_count
@@ -120,6 +120,16 @@ class GaussianCopula:
         together = np.stack([(normal * row).sum(axis=1) for row in self._factor], axis=1)
         found = _physical(self.inputs, special.ndtr(together))
         found[:, 0] = independent[:, 0]
+        return found
+
+    def independent(self, points: ArrayLike) -> Array:
+        """The independent points that dependent ones came from by `dependent`, both physical, [count, input_count]."""
+        given = numbers("points", points)
+        uniforms = [entry.cdf(given[:, k]) for k, entry in enumerate(self.inputs.values())]
+        together = special.ndtri(np.clip(np.column_stack(uniforms), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY))
+        normal = linalg.solve_triangular(self._factor, together.T, lower=True).T
+        found = _physical(self.inputs, special.ndtr(normal))
+        found[:, 0] = given[:, 0]
         return found
 
 

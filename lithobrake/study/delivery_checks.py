@@ -261,6 +261,17 @@ def drawn_together(study: "Study", columns: "Mapping[str, np.ndarray]") -> "dict
     return {**columns, **dict(zip(keys, copula_of(study, keys).dependent(table).T, strict=True))}
 
 
+def drawn_apart(study: "Study", columns: "Mapping[str, np.ndarray]") -> "dict[str, np.ndarray]":
+    """The independent draws that columns by key, each [count], came from by `drawn_together`."""
+    keys = tuple(key for key in correlated_keys(study) if key in columns)
+    if len(keys) < 2:
+        return dict(columns)
+    import numpy as np
+
+    table = np.column_stack([columns[key] for key in keys])
+    return {**columns, **dict(zip(keys, copula_of(study, keys).independent(table).T, strict=True))}
+
+
 def journey_problems(study: Study) -> Iterator[str]:
     yield from delivery_problems(study)
     yield from sky_problems(study)

@@ -7,6 +7,7 @@ import numpy as np
 
 from lithobrake import analysis
 from lithobrake.analysis.subset_simulation import limit_state_met
+from lithobrake.pipeline.answer.correlated_inputs import independent_columns
 from lithobrake.pipeline.answer.emulated_ends import sample_fates
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.journey_limit_states import journey_limit_state
@@ -75,11 +76,11 @@ def _one(
             f"limit_states.{name} is {state.text!r}, which cannot be decided for any run (runs.sqlite lists how each "
             "ended); choose another condition, or correct the outcomes"
         )
-    x = runs.columns(list(inputs))
+    x, apart = runs.columns(list(inputs)), independent_columns(study, {name: runs.inputs[name] for name in inputs})
     found = analysis.failure_probability(
         failing,
         runs.inputs["bed"],
-        terms=analysis.regression_terms(inputs, x),
+        terms=analysis.regression_terms(inputs, apart),
         drawn=_drawn(state, of_samples),
         like_missing=left_in_flight(runs),
         why=why_no_interval(study),
