@@ -48,7 +48,7 @@ INPUT_LABELS = {
     **{f"lander.{name}": f"{PROPERTIES[name].label}, lander" for name in SURFACE_PROPERTIES},
     "lander.mass": "mass of the lander",
     "lander.diameter": "diameter of the lander",
-    ERRORS: "delivery: factor of all errors",
+    ERRORS: "factor of all delivery errors",
     "impact.speed": "impact speed",
     "impact.incidence_deg": "incidence",
     "impact.azimuth_deg": "azimuth",

@@ -117,6 +117,12 @@ def _correlation_problems(study: Study, delivery: delivery_sections.DeliverySect
             )
             return
         seen.add(frozenset((one, other)))
+        if study.expansion is not None and not {one, other} & {*delivery_sections.PLACE_KEYS}:
+            yield (
+                f"delivery.correlations has {one} and {other}, and [expansion] takes all inputs as independent; leave "
+                "one of the two out"
+            )
+            return
     if delivery.correlations:
         try:
             copula_of(study, correlated_keys(study))

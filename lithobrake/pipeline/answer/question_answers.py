@@ -7,7 +7,7 @@ import numpy as np
 
 from lithobrake import analysis
 from lithobrake.analysis.subset_simulation import limit_state_met
-from lithobrake.pipeline.answer.correlated_inputs import independent_columns
+from lithobrake.pipeline.answer.correlated_inputs import independent_columns, significant_together
 from lithobrake.pipeline.answer.emulated_ends import sample_fates
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.journey_limit_states import journey_limit_state
@@ -18,7 +18,7 @@ from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.first_touchdown.samples import Samples
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.questions import LimitStateInput, LimitStateResult
+from lithobrake.results.questions import LimitStateResult
 from lithobrake.results.run_results import CountedShare
 from lithobrake.statements import limits
 from lithobrake.study import Study
@@ -96,7 +96,7 @@ def _one(
         tail_limit=found.tail_limit,
         why=found.by_runs.share.why_missing,
         failing_runs=float(np.nansum(failing)),
-        inputs={key: LimitStateInput(**vars(one), found=one.found) for key, one in of_inputs.items()},
+        inputs=significant_together(study, of_inputs),
         statement="",
     )
 

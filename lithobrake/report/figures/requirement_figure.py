@@ -12,7 +12,7 @@ from lithobrake.report.figures.style import INK, QUIET, TEST, TRAINING, WASH
 from lithobrake.results.requirement_results import RequiredDelivery, Requirement
 from lithobrake.statements.labels import input_label
 from lithobrake.vocabulary.array_types import Floats
-from lithobrake.vocabulary.number_words import number, percent
+from lithobrake.vocabulary.number_words import at_level, number, percent
 from lithobrake.vocabulary.requirement import Verdict
 
 # Dark, middle and light, so that they are told apart in grey.
@@ -40,7 +40,7 @@ def requirement_figure(found: Requirement) -> Figure:
     for axes, panel in zip(grid, panels, strict=False):
         _map(axes, found, [one for one in found.deliveries if panel is None or one.values[2] == panel])
         if panel is not None:
-            axes.set_title(f"{_label(found, 2)} = {number(panel)}")
+            axes.set_title(f"{input_label(found.names[2])} = {number(panel)} {found.units[2]}".rstrip())
     for axes in grid[len(panels) :]:
         axes.remove()
     for place, axes in enumerate(grid[: len(panels)]):
@@ -119,10 +119,10 @@ def _legend(figure: Figure, found: Requirement, *, is_map: bool) -> None:
     what = f"probability of {percent(found.required)}" if is_map else "probability"
     handles += [
         Line2D([], [], color=INK, linewidth=1.8, label=what),
-        Line2D(
-            [], [], color=INK, linewidth=1.1, linestyle="dashed", label=f"ends of its {percent(found.level)} interval"
-        ),
+        Line2D([], [], color=INK, linewidth=1.1, linestyle="dashed", label=f"ends of its {at_level(found.level)}"),
     ]
+    if not is_map:
+        handles.append(Line2D([], [], color=QUIET, linewidth=1.1, linestyle="dotted", label="required"))
     figure.legend(handles=handles, loc="outside upper center", ncols=3)
 
 

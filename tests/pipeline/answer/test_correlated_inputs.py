@@ -5,11 +5,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.analysis import regression_terms, variance_shares
+from lithobrake.analysis import FailureInput, regression_terms, variance_shares
 from lithobrake.chaos import Distribution, Normal
-from lithobrake.pipeline.answer.correlated_inputs import independent_columns, less_first
+from lithobrake.pipeline.answer.correlated_inputs import (
+    groups_of_inputs,
+    independent_columns,
+    less_first,
+    significant_together,
+)
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.study import StudySource
+from lithobrake.vocabulary.estimate import Estimate
 
 from ..journeys.bouncing_lander import journey_tables
 
@@ -85,3 +91,17 @@ def test_what_one_number_tells_of_another_is_taken_off_and_its_values_stay() -> 
     assert (np.sort(found) == np.sort(second)).all()
     assert np.corrcoef(first, np.log(found))[0, 1] == pytest.approx(0.0, abs=0.01)
     assert (less_first(np.ones(3), second[:3]) == second[:3]).all()
+
+
+def test_inputs_that_go_together_are_significant_together() -> None:
+    """Links make one group, also through a third key; an input outside of it stays as it is."""
+    error = {"distribution": "normal", "mean": 0.0, "std": 10.0}
+    pairs = [["spin_x", "spin_y", 0.3], ["north_error", "east_error", 0.2], ["north_error", "spin_y", 0.2]]
+    study = design_of(correlations=pairs, north_error=error, east_error=error).study
+    assert groups_of_inputs(study) == [{FIRST, SECOND, "site.north_error", "site.east_error"}]
+    far, near = (Estimate(value, 0.0, 1.0) for value in (0.5, 0.1))
+    found = {name: FailureInput(far if name == FIRST else near, 0.2, 1.0, 1.0) for name in (*LAWS, "site.north_error")}
+    told = {name: one.found for name, one in significant_together(study, found).items()}
+    assert told == {FRICTION: False, FIRST: True, SECOND: True, "site.north_error": True}
+    alone = {name: one.found for name, one in significant_together(design_of().study, found).items()}
+    assert alone == {FRICTION: False, FIRST: True, SECOND: False, "site.north_error": False}
