@@ -61,7 +61,8 @@ def admissible_edge(values: Sequence[float], found: Sequence[Estimate | None], r
     fit = fits[falls]
     if ((fit[0] < lower) | (fit[0] > upper)).any():
         return AdmissibleEdge(falls, why=RISES_AND_FALLS)
-    return AdmissibleEdge(falls, *(_crossing(x, curve, required, falls=falls) for curve in fit))
+    value, sure, possible = (_crossing(x, curve, required, falls=falls) for curve in fit)
+    return AdmissibleEdge(falls, value, sure, possible)
 
 
 def _monotone(y: Array, *, falls: bool) -> Array:

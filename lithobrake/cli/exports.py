@@ -46,7 +46,7 @@ Parameters = Annotated[
     typer.Option(
         "--over",
         metavar="KEY=FROM:TO",
-        help="Delivery option and its range, KEY=FROM:TO or KEY=FROM:TO:COUNT; up to three (delivery.errors: a factor).",
+        help="Delivery option and its range, KEY=FROM:TO or KEY=FROM:TO:COUNT; up to three (delivery.errors: factor).",
         show_default=False,
     ),
 ]

@@ -169,6 +169,19 @@ def test_deliveries_whose_impacts_are_beyond_the_training_range_have_no_result()
     assert 2.0 < edge.sure <= 3.0
 
 
+def test_on_unknown_ground_a_probability_is_that_of_one_ground() -> None:
+    """On half of the beds all landers meet it and on the others half do: one ground may have either."""
+    refit, bed = np.random.default_rng(6).permutation(960) % REFITS, np.arange(960) // 40
+    met = np.where(bed % 2 == 0, 1.0, np.arange(960) % 2)
+    landers = GridLanders(met[None], bed[None], refit[None], np.ones((1, 960), dtype=bool), np.full((1, 960), ""))
+    fitted = Refits(24, tuple([20] * 24), None)
+    mean, one = (landers.probability(0, fitted, 0.9, one_ground=flag) for flag in (False, True))
+    assert mean.value == one.value == pytest.approx(0.75)
+    assert mean.upper - mean.lower < 0.25
+    assert one.lower < 0.5
+    assert one.upper > 0.99
+
+
 @pytest.mark.parametrize(("asked", "said"), [
     ({"name": "far"}, r"NAME is 'far'; allowed: a name of \[limit_states\] \(near, fast, upright\); add it there"),
     ({"name": "fast"}, r"limit_states\.fast is of first touchdowns; allowed: one of whole journeys"),

@@ -67,6 +67,19 @@ def test_landers_that_miss_the_ground_keep_the_end_of_their_flight(tmp_path: Pat
     assert [row[0] for row, miss in zip(rows, misses, strict=True) if not miss] == list(range(len(found.place)))
 
 
+def test_the_errors_of_a_release_are_an_option_and_states_have_none(tmp_path: Path) -> None:
+    """The factor of all of them, as one value of a grid like any other."""
+    grid = {"delivery.errors": [0.0, 1.0]}
+    study = check_tables(tables(delivery={"release": deepcopy(RELEASE)}, aim={"grid": grid}), Path())
+    begin = option_landers(DrawnDesign(with_site_gravity(study)), study.aim.aims(), 2 * REFITS).begin
+    same, apart = (begin.origin[:REFITS], begin.origin[-REFITS:])
+    assert np.ptp(same, axis=0).max() < 1e-6
+    assert np.ptp(apart, axis=0).max() > 1.0
+    write_states(tmp_path / "states.csv")
+    with pytest.raises(StudyError, match=r'"delivery\.errors" is no aim; allowed: delivery\.offset_up'):
+        check_tables(tables(delivery={"states": str(tmp_path / "states.csv")}, aim={"grid": grid}), Path())
+
+
 @pytest.mark.parametrize(("changes", "words"), [
     ({"aim": {"grid": {"delivery.speed": [0.05]}}}, r'"delivery\.speed" is no aim; allowed: delivery\.offset_up'),
     ({"aim": {"grid": GRID, "sides": ["z"]}}, "aim.sides chooses the side down at the first touchdown"),
