@@ -74,19 +74,19 @@ def share_interval(share: float, half_width: float) -> tuple[float, float]:
     return lower / (1.0 + lower), upper / (1.0 + upper)
 
 
-def share_spread(share: float, deviation: float) -> tuple[float, float]:
+def share_spread(share: float, deviation: float, level: float = LEVEL) -> tuple[float, float]:
     """Bounds that hold a share that varies about its mean by a standard deviation, within [0, 1].
 
     Near 0 or 1 the far one is a quantile of the beta law with both, as the logit of a share that reaches its end has
     none; the near one is that end, which few landings cannot tell from a share just short of it.
     """
     if NEAR_CERTAIN <= share <= 1.0 - NEAR_CERTAIN or share in (0.0, 1.0) or deviation == 0.0:
-        return share_interval(share, normal_quantile() * deviation)
+        return share_interval(share, normal_quantile(level) * deviation)
     # No share has a larger variance than one that is 0 or 1.
     size = share * (1.0 - share) / deviation**2 - 1.0
     if size <= 0.0:
         return 0.0, 1.0
-    tail = 0.5 + 0.5 * LEVEL if share < 0.5 else 0.5 - 0.5 * LEVEL
+    tail = 0.5 + 0.5 * level if share < 0.5 else 0.5 - 0.5 * level
     far = float(special.betaincinv(share * size, (1.0 - share) * size, tail))
     return (0.0, max(far, share)) if share < 0.5 else (min(far, share), 1.0)
 

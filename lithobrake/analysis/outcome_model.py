@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lithobrake.analysis.confidence import share_interval, t_quantile
+from lithobrake.analysis.confidence import LEVEL, share_interval, t_quantile
 from lithobrake.analysis.unseen_event import HALF_RUN, RunCounts, limit_of_runs
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distributions import Distribution
@@ -92,7 +92,11 @@ class OutcomeModel:
 
 
 def refit_interval(
-    counts: ArrayLike, totals: ArrayLike, bed_count: int, run_count: RunCounts | None = None
+    counts: ArrayLike,
+    totals: ArrayLike,
+    bed_count: int,
+    run_count: RunCounts | None = None,
+    level: float = LEVEL,
 ) -> Estimate:
     """Share of draws that have met an event, with its interval over beds that were not in the study.
 
@@ -116,9 +120,9 @@ def refit_interval(
     if not ((met >= 0.0) & (met <= drawn)).all():
         raise ValueError("counts must lie between 0 and totals in every refit: draws that have met the event, of all")
     share, total = float(met.sum() / drawn.sum()), float(drawn.sum())
-    limit = limit_of_runs(bed_count if run_count is None else run_count, bed_count)
+    limit = limit_of_runs(bed_count if run_count is None else run_count, bed_count, level)
     if share in (0.0, 1.0):
-        return Estimate(share, share * (1.0 - limit), share + (1.0 - share) * limit)
+        return Estimate(share, share * (1.0 - limit), share + (1.0 - share) * limit, level)
     shares = met / drawn
     total_variance = float(shares.var(ddof=1))
     between = total_variance - float(np.mean(shares * (1.0 - shares) / (drawn - 1.0)))
@@ -126,12 +130,12 @@ def refit_interval(
     between = max(between, total_variance * math.sqrt(2.0 / len(shares)))
     # Drawing B of B beds scatters by (B - 1) / B of what B beds scatter by.
     error = math.sqrt(between * bed_count / (bed_count - 1) + share * (1.0 - share) / total)
-    half = t_quantile(bed_count - 1) * error
+    half = t_quantile(bed_count - 1, level) * error
     lower, upper = share_interval(share, half)
     is_unseen = run_count is not None and min(share, 1.0 - share) * np.sum(run_count) < HALF_RUN
     # On the logit scale a few draws with the event could pass for anything.
     if share < 0.5:
         upper = min(upper, max(share + half, limit))
-        return Estimate(share, lower, max(upper, limit) if is_unseen else upper)
+        return Estimate(share, lower, max(upper, limit) if is_unseen else upper, level)
     lower = max(lower, min(share - half, 1.0 - limit))
-    return Estimate(share, min(lower, 1.0 - limit) if is_unseen else lower, upper)
+    return Estimate(share, min(lower, 1.0 - limit) if is_unseen else lower, upper, level)

@@ -65,11 +65,11 @@ def part_that_counts(weights: Array) -> float:
     return float(np.sum(weights) ** 2 / (len(weights) * np.sum(weights**2))) if len(weights) else 1.0
 
 
-def even_limit(run_count: int, bed_count: int) -> float:
+def even_limit(run_count: int, bed_count: int, level: float = LEVEL) -> float:
     """The limit of so many runs that are spread evenly over beds, as `unseen_limit`."""
     beds = min(whole_number("bed_count", bed_count, 0, MOST_UNITS), whole_number("run_count", run_count, 0, MOST_UNITS))
     # Beds with as many runs count alike, so one of them stands for all.
-    return limit_of_counts(np.array([run_count / beds]), float(beds)) if beds else 1.0
+    return limit_of_counts(np.array([run_count / beds]), float(beds), level=level) if beds else 1.0
 
 
 def runs_by_bed(bed: ArrayLike) -> tuple[int, tuple[int, ...]]:
@@ -78,27 +78,29 @@ def runs_by_bed(bed: ArrayLike) -> tuple[int, tuple[int, ...]]:
     return len(counts), tuple(counts)
 
 
-def limit_of_runs(runs: RunCounts, bed_count: int) -> float:
+def limit_of_runs(runs: RunCounts, bed_count: int, level: float = LEVEL) -> float:
     """The limit of so many runs as if evenly over beds, or of those of each bed [bed_count] where these are known."""
     if isinstance(runs, Sequence):
-        return limit_of_counts([count for count in runs if count])
-    return even_limit(runs, bed_count)
+        return limit_of_counts([count for count in runs if count], level=level)
+    return even_limit(runs, bed_count, level)
 
 
-def limit_of_counts(counts: ArrayLike, part: float = 1.0, correlation: float = LARGEST_CORRELATION) -> float:
+def limit_of_counts(
+    counts: ArrayLike, part: float = 1.0, correlation: float = LARGEST_CORRELATION, level: float = LEVEL
+) -> float:
     """The limit of beds with these counts of runs [bed_count], at least 1 each; part: of all this that counts."""
     finite_number("correlation", correlation, at_least=0.0, at_most=1.0)
     runs, beds = np.unique(np.asarray(counts, dtype=float), return_counts=True)
     if not len(runs):
         return 1.0
     units = part * float(beds @ runs), part * float(beds.sum())
-    least, most = (-math.expm1(math.log(1.0 - LEVEL) / one) for one in units)
+    least, most = (-math.expm1(math.log(1.0 - level) / one) for one in units)
     # A smaller correlation is none, to more digits than the logarithms of the beta law have.
     if correlation < 1e-7 or correlation == 1.0 or most - least <= 0.0:
         return most if correlation == 1.0 else least
     # Of the beta law: both parameters together.
     size = (1.0 - correlation) / correlation
-    target = math.log(1.0 - LEVEL) / part + float(beds @ (special.gammaln(size + runs) - special.gammaln(size)))
+    target = math.log(1.0 - level) / part + float(beds @ (special.gammaln(size + runs) - special.gammaln(size)))
 
     def excess(limit: float) -> float:
         other = (1.0 - limit) * size

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special, stats
+from scipy import linalg, special, stats
 
 from lithobrake.chaos.design import from_uniforms, sobol_sequence
 from lithobrake.chaos.distributions import Distribution, Normal
@@ -83,13 +83,26 @@ class GaussianCopula:
         Each column follows from those up to it, the first stays as it is, and a row from that row alone.
         """
         independent = numbers("points", points)
-        uniforms = [entry.cdf(independent[:, k]) for k, entry in enumerate(self.inputs.values())]
-        normal = special.ndtri(np.clip(np.column_stack(uniforms), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY))
+        normal = self._normal(independent)
         # Not by a matrix product, whose rounding depends on how many rows there are.
         together = np.stack([(normal * row).sum(axis=1) for row in self._factor], axis=1)
-        found = from_uniforms(self.inputs, special.ndtr(together))
+        found = self.points(together)
         found[:, 0] = independent[:, 0]
         return found
+
+    def independent(self, points: ArrayLike) -> Array:
+        """The independent points that dependent ones came from by `dependent`, both physical, [count, input_count]."""
+        given = numbers("points", points)
+        together = self._normal(given)
+        normal = linalg.solve_triangular(self._factor, together.T, lower=True).T
+        found = self.points(normal)
+        found[:, 0] = given[:, 0]
+        return found
+
+    def _normal(self, points: Array) -> Array:
+        """Standard normals by input of points in physical units, each [count, input_count]."""
+        uniforms = [entry.cdf(points[:, k]) for k, entry in enumerate(self.inputs.values())]
+        return np.asarray(special.ndtri(np.clip(np.column_stack(uniforms), LEAST_PROBABILITY, 1.0 - LEAST_PROBABILITY)))
 
 
 class ShapleyEffects(NamedTuple):

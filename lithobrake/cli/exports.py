@@ -41,6 +41,15 @@ Again = Annotated[
     str | None,
     typer.Option("--run", metavar="ID", help="vtkhdf, sheet: the run to simulate again; default: the preview landing."),
 ]
+Parameters = Annotated[
+    list[str],
+    typer.Option(
+        "--over",
+        metavar="KEY=FROM:TO",
+        help="Delivery option and its range, KEY=FROM:TO or KEY=FROM:TO:COUNT; up to three (delivery.errors: factor).",
+        show_default=False,
+    ),
+]
 
 
 @arguments.command(arguments.EXPORT, "export runs/study --to oem --flight 12 --epoch 2026-11-22T12:00:00")
@@ -175,3 +184,39 @@ def search(
     found = search_lander(results, images, imager, count=count, size=size)
     paths = write_search(found, imager, place)
     arguments.tell([*search_lines(found), *(f"Wrote {path}" for path in paths)])
+
+
+@arguments.command(arguments.LOOK, "requirement study.toml near --over delivery.errors=0.5:3 --check 48")
+def requirement(
+    study: arguments.StudyPath,
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Limit state of journeys.", show_default=False)],
+    over: Parameters,
+    probability: Annotated[float, typer.Option("--probability", metavar="P", help="Least probability.")] = 0.9,
+    confidence: Annotated[float, typer.Option("--confidence", metavar="P", help="Level of the intervals.")] = 0.9,
+    landers: Annotated[int, typer.Option("--landers", metavar="N", help="Landers per delivery.")] = 1000,
+    check: Annotated[int, typer.Option("--check", metavar="N", help="Simulated journeys per corner.", min=0)] = 0,
+    out: arguments.OutPath = None,
+    workers: arguments.Workers = None,
+    scheduler: arguments.Scheduler = None,
+    force: arguments.Force = False,
+) -> None:
+    """Find the deliveries that still meet a limit state with a probability. Writes DIR/requirement.csv and .png."""
+    folder = arguments.study_folder(study, out)
+    from lithobrake.study import StudySource
+
+    source = StudySource.read(study)
+    from lithobrake import pipeline
+    from lithobrake.files.atomic import refuse_existing
+    from lithobrake.progress import study_progress
+
+    grid = pipeline.grid_of_ranges(over)
+    written = () if force else pipeline.requirement_files(folder, simulated=check > 0)
+    # Before the landers are followed, which takes minutes.
+    refuse_existing(written, "move it away, or replace it with --force")
+    with study_progress() as shown:
+        found = pipeline.find_requirement(
+            source, folder, name, grid, probability=probability, confidence=confidence, lander_count=landers,
+            simulated_count=check, worker_count=workers, scheduler=scheduler, shown=shown,
+        )  # fmt: skip
+    paths = pipeline.write_requirement(found, folder)
+    arguments.tell([*pipeline.requirement_lines(found), *(f"Wrote {path}" for path in paths)])

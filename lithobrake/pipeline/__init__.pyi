@@ -15,6 +15,11 @@ from .commands.one_lander import follow_one as follow_one
 from .commands.one_lander import land_one as land_one
 from .commands.one_lander import landing_inputs as landing_inputs
 from .commands.rare_landings import rare_failure as rare_failure
+from .commands.requirement import find_requirement as find_requirement
+from .commands.requirement import grid_of_ranges as grid_of_ranges
+from .commands.requirement import requirement_files as requirement_files
+from .commands.requirement import requirement_lines as requirement_lines
+from .commands.requirement import write_requirement as write_requirement
 from .commands.serving import EvaluationProcess as EvaluationProcess
 from .commands.serving import ServedStudy as ServedStudy
 from .commands.serving import served_models as served_models

@@ -24,7 +24,7 @@ from lithobrake.study import Study
 from lithobrake.study.design_sections import SkyBody
 from lithobrake.study.limit_state_checks import option_states
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION, REFIT_COUNT
-from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.estimate import LEVEL, Estimate
 from lithobrake.vocabulary.file_names import TOUCHDOWNS_FILE
 from lithobrake.vocabulary.journey_names import JOURNEY_WORDS
 from lithobrake.vocabulary.limit_state import LimitState
@@ -153,7 +153,7 @@ def site_cells(
             **dict(zip(("latitude_deg", "longitude_deg"), middles[number].tolist(), strict=True)),
             **dict(zip(("south_deg", "north_deg", "west_deg", "east_deg"), bounds[number].tolist(), strict=True)),
             unknown=float(unknown[number]),
-            beyond=_beyond(landers.beyond[number]),
+            beyond=beyond_words(landers.beyond[number]),
             ends=_ends(landers, number, fitted, states) if answered[number] else None,
             not_worse=number in best,
             slope_deg=_spread(ground.slope_deg[number]),
@@ -177,11 +177,13 @@ def all_at_rest(landers: SiteLanders, fitted: Refits) -> Estimate | None:
     return share_of_known(end == JourneyEnd.AT_REST, end != UNKNOWN_END, refit, fitted)
 
 
-def share_of_known(met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted: Refits) -> Estimate:
+def share_of_known(
+    met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted: Refits, level: float = LEVEL
+) -> Estimate:
     """Share of the landers of known end that have met an event, all [lander_count]; bounds hold for all landers."""
     everyone = np.ones(len(met), dtype=bool)
-    least, most = (fitted.share(one, everyone, refit) for one in (met, met | ~known))
-    return Estimate(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper)
+    least, most = (fitted.share(one, everyone, refit, level) for one in (met, met | ~known))
+    return Estimate(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper, level)
 
 
 def site_states(study: Study) -> dict[str, LimitState]:
@@ -221,7 +223,7 @@ def _not_worse(landers: SiteLanders, answered: np.ndarray, fitted: Refits) -> tu
     return best_choice(rests, fitted.bed_count, answered).not_worse
 
 
-def _beyond(beyond: np.ndarray) -> str:
+def beyond_words(beyond: np.ndarray) -> str:
     """What impacts of landers were beyond, in words, the most frequent first."""
     met = Counter(beyond[beyond != ""].tolist())
     return ", ".join(WORDS[name] for name, _ in met.most_common())

@@ -26,7 +26,7 @@ class LimitStateInput(Inlined):
     median_of_all: float
     """of its input distribution"""
     found: bool
-    """whether the input is significant: the distance exceeds luck"""
+    """whether the input is significant: the distance exceeds luck, or that of an input that goes together with it"""
 
 
 @dataclass(frozen=True)

@@ -273,7 +273,7 @@ def first_variance(data: "PageData") -> str:
         return ""
     correlations: Iterable[tuple[str, str, float]] = (data.study.get("delivery") or {}).get("correlations") or ()
     pairs = ", ".join(f"{one} with {other}" for one, other, _ in correlations)
-    more = f" The parts assume independent inputs, but {pairs} are correlated: read their parts together."
+    more = f" As {pairs} are correlated, all of the delivery is one input, with what its parts explain together."
     return variance(data.results) + (more if pairs else "")
 
 

@@ -17,7 +17,7 @@ from lithobrake.vocabulary.outcomes import (
     SampleOutcome,
     TouchdownOutcome,
 )
-from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, TOUCHDOWN
+from lithobrake.vocabulary.quantities import ERRORS, GROUND_KIND, GROUND_SIZE, TOUCHDOWN
 
 if TYPE_CHECKING:
     from lithobrake.results.dispersion import RestRegion
@@ -48,6 +48,7 @@ INPUT_LABELS = {
     **{f"lander.{name}": f"{PROPERTIES[name].label}, lander" for name in SURFACE_PROPERTIES},
     "lander.mass": "mass of the lander",
     "lander.diameter": "diameter of the lander",
+    ERRORS: "factor of all delivery errors",
     "impact.speed": "impact speed",
     "impact.incidence_deg": "incidence",
     "impact.azimuth_deg": "azimuth",

@@ -117,6 +117,12 @@ def _correlation_problems(study: Study, delivery: delivery_sections.DeliverySect
             )
             return
         seen.add(frozenset((one, other)))
+        if study.expansion is not None and not {one, other} & {*delivery_sections.PLACE_KEYS}:
+            yield (
+                f"delivery.correlations has {one} and {other}, and [expansion] takes all inputs as independent; leave "
+                "one of the two out"
+            )
+            return
     if delivery.correlations:
         try:
             copula_of(study, correlated_keys(study))
@@ -259,6 +265,17 @@ def drawn_together(study: "Study", columns: "Mapping[str, np.ndarray]") -> "dict
 
     table = np.column_stack([columns[key] for key in keys])
     return {**columns, **dict(zip(keys, copula_of(study, keys).dependent(table).T, strict=True))}
+
+
+def drawn_apart(study: "Study", columns: "Mapping[str, np.ndarray]") -> "dict[str, np.ndarray]":
+    """The independent draws that columns by key, each [count], came from by `drawn_together`."""
+    keys = tuple(key for key in correlated_keys(study) if key in columns)
+    if len(keys) < 2:
+        return dict(columns)
+    import numpy as np
+
+    table = np.column_stack([columns[key] for key in keys])
+    return {**columns, **dict(zip(keys, copula_of(study, keys).independent(table).T, strict=True))}
 
 
 def journey_problems(study: Study) -> Iterator[str]:

@@ -27,6 +27,8 @@ OWN_KEYS = ("correlations", "frame", "epoch", "states", "release", *OFFSETS, *VE
 # What such a flight tells and no one gives; from the aim point no direction is then better than another.
 FLOWN = ("speed", "incidence_deg", "heading_deg", "north_error", "east_error")
 ANY_HEADING = quantity.Uncertain("uniform", {"lower": 0.0, "upper": 360.0})
+# Of these, the errors; those of a release are its standard deviations or its covariance.
+ERROR_KEYS = ("north_error", "east_error")
 # Of one journey; more would be a lander that moves along for ever.
 MOST_TOUCHDOWNS = 1000
 # What follows for those who look at first touchdowns alone.
@@ -98,6 +100,22 @@ class ReleaseSection(quantity.Section):
     covariance: Annotated[Matrix, SquareMatrix()] | None = None
     """Instead of these: six rows of six numbers, for x, y, z, vx, vy, vz along the axes of delivery.frame [m2, m2/s,
     m2/s2]."""
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether its landers begin in different states."""
+        rows = self.covariance or (self.position_std or (), self.velocity_std or ())
+        return any(entry != 0.0 for row in rows for entry in row)
+
+    def with_errors(self, factor: float) -> "ReleaseSection":
+        """The same release with errors so many times as large, the covariance by the square of that."""
+        given = {name: getattr(self, name) for name in ("position_std", "velocity_std")}
+        changed: dict[str, Any] = {
+            name: tuple(factor * one for one in std) for name, std in given.items() if std is not None
+        }
+        if self.covariance is not None:
+            changed["covariance"] = tuple(tuple(factor**2 * one for one in row) for row in self.covariance)
+        return self.model_copy(update=changed)
 
 
 class DeliverySection(quantity.Section):

@@ -164,8 +164,8 @@ class AimSection(Section):
     See docs/aiming.md."""
 
     grid: dict[str, list[Annotated[float, Number("")]]] = Field(default={})
-    """Keys of [delivery], one to three, and their values in ascending order: all combinations are options. Everything
-    else is sampled."""
+    """Keys of [delivery], one to three, or "delivery.errors", the factor of all its errors, and their values in
+    ascending order: all combinations are options. Everything else is sampled."""
     sides: list[str] = Field(default=[])
     """Sides of the lander that face the ground at the first touchdown, as further options; the lander is turned about
     the vertical at random, without a pointing error. For a box its axes, such as "z", or "x or y" where edges are

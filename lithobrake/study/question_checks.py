@@ -2,10 +2,10 @@
 
 import importlib.util
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from lithobrake.study.delivery_sections import FAR, FAST, OFFSETS, VELOCITY_OFFSETS, arrival_key
+from lithobrake.study.delivery_sections import ERROR_KEYS, FAR, FAST, OFFSETS, VELOCITY_OFFSETS
 from lithobrake.study.design_sections import AIM_RESULTS, AimLimit
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.study.limit_state_checks import option_states
@@ -14,10 +14,12 @@ from lithobrake.study.study import Study
 from lithobrake.vocabulary.clock import Epoch
 from lithobrake.vocabulary.journey_names import JOURNEY_WORDS
 from lithobrake.vocabulary.plain_text import closest, show
-from lithobrake.vocabulary.quantities import REST_NUMBERS
+from lithobrake.vocabulary.quantities import ERRORS, REST_NUMBERS
 
 # A figure has two axes and a row of pictures; more aims than this nobody looks at.
 MOST_AXES, MOST_AIMS = 3, 500
+# Errors so many times those of the study have nothing to do with them.
+MOST_ERRORS = 100.0
 PLACES = {"site.latitude_deg": 90.0, "site.longitude_deg": 360.0, "site.heading_deg": 360.0}
 POLE = ("pole_right_ascension_deg", "pole_declination_deg")
 # What tells where Sun and Earth are, by the module that each is imported by.
@@ -33,7 +35,6 @@ def aim_problems(study: Study) -> Iterator[str]:
             if getattr(study.aim, key):
                 yield f"aim.{key} is given without aim.grid; say there between which values there is to choose"
         return
-    inputs = uncertain(study.touchdown_values())
     is_flown = study.delivery is not None and study.delivery.is_flown
     if is_flown and study.aim.sides:
         yield (
@@ -51,34 +52,40 @@ def aim_problems(study: Study) -> Iterator[str]:
             f"aim.grid has {axes} names, with aim.sides, and {count} aims; allowed: at most {MOST_AXES} and "
             f"{MOST_AIMS}; leave some values out"
         )
-    yield from _value_problems(study, grid, inputs)
+    found = (option_problem(study, name, values, f'aim.grid."{name}"') for name, values in grid.items())
+    yield from filter(None, found)
     yield from _limit_problems(study)
 
 
-def _value_problems(
-    study: Study, grid: Mapping[str, Sequence[float]], inputs: Mapping[str, Uncertain]
-) -> Iterator[str]:
-    """Names of a grid that nothing has, and values that its runs do not reach over."""
-    arrival = (*(name for name in inputs if name.startswith("impact.")), *PLACES)
-    known = tuple(f"delivery.{name.partition('.')[2]}" for name in arrival)
-    farthest: dict[str, float] = {}
-    if study.delivery is not None and study.delivery.is_flown:
+def option_ranges(study: Study) -> dict[str, tuple[float, float]]:
+    """The dotted keys of [delivery] that a study can choose among, each from where to where its runs reach."""
+    delivery = study.delivery
+    if delivery is not None and delivery.is_flown:
         # What is told by the flights cannot be chosen, but where these begin.
         farthest = dict.fromkeys(OFFSETS, FAR) | dict.fromkeys(VELOCITY_OFFSETS, FAST)
-        known = tuple(f"delivery.{name}" for name in farthest)
-    for option, values in grid.items():
-        name = arrival_key(option)
-        if option not in known:
-            yield f'aim.grid."{option}" is no aim; allowed: {", ".join(known)}{closest(option, known)}'
-            continue
-        most = farthest.get(option.partition(".")[2]) or PLACES.get(name, 0.0)
-        lower, upper = reach(inputs[name]) if name in inputs and not farthest else (-most, most)
-        inside = all(lower <= value <= upper for value in values)
-        if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
-            yield (
-                f'aim.grid."{option}" is {show(values)}; allowed: ascending values from {lower:g} to {upper:g}, '
-                "which the runs reach over; leave others out, or widen its distribution"
-            )
+        found = {f"delivery.{name}": (-most, most) for name, most in farthest.items()}
+        return found | ({ERRORS: (0.0, MOST_ERRORS)} if delivery.release and delivery.release.has_errors else {})
+    inputs = uncertain(study.touchdown_values())
+    arrival = {name: reach(value) for name, value in inputs.items() if name.startswith("impact.")}
+    arrival |= {name: (-most, most) for name, most in PLACES.items()}
+    found = {f"delivery.{name.partition('.')[2]}": ends for name, ends in arrival.items()}
+    has_errors = any(isinstance(getattr(study.site, key), Uncertain) for key in ERROR_KEYS)
+    return found | ({ERRORS: (0.0, MOST_ERRORS)} if has_errors else {})
+
+
+def option_problem(study: Study, option: str, values: Sequence[float], where: str) -> str | None:
+    """What is wrong with the values of an option, in a sentence that begins with where they stand; None for nothing."""
+    known = option_ranges(study)
+    if option not in known:
+        return f"{where} is no aim; allowed: {', '.join(known)}{closest(option, tuple(known))}"
+    lower, upper = known[option]
+    inside = all(lower <= value <= upper for value in values)
+    if not values or not inside or any(later <= earlier for earlier, later in pairwise(values)):
+        return (
+            f"{where} is {show(values)}; allowed: ascending values from {lower:g} to {upper:g}, which the runs reach "
+            "over; leave others out, or widen its distribution"
+        )
+    return None
 
 
 def _side_problems(study: Study) -> Iterator[str]:

@@ -8,7 +8,7 @@ from pydantic.fields import FieldInfo
 
 from lithobrake.study.quantity import Number
 from lithobrake.study.study import Study
-from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, ORIENTATION, PURE, TOUCHDOWN
+from lithobrake.vocabulary.quantities import ERRORS, GROUND_KIND, GROUND_SIZE, ORIENTATION, PURE, TOUCHDOWN
 
 _DEGREE = math.pi / 180.0
 # Each row one quantity: its units, and each in the first of them. Feet and inches are the international ones; rpm is
@@ -30,7 +30,7 @@ def input_units() -> dict[str, str]:
 
     The inputs of the user's own program are not among them: only the program knows their units.
     """
-    return _units("", Study) | dict.fromkeys((*ORIENTATION, GROUND_KIND), PURE) | {GROUND_SIZE: "m"}
+    return _units("", Study) | dict.fromkeys((*ORIENTATION, GROUND_KIND, ERRORS), PURE) | {GROUND_SIZE: "m"}
 
 
 def run_units() -> dict[str, str]:

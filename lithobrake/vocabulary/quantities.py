@@ -49,6 +49,8 @@ VELOCITY_OUT = ("velocity_out_x", "velocity_out_y", "velocity_out_z")
 # How a lander arrives at a touchdown, by the keys of the study file.
 IMPACT_SPEED, IMPACT_INCIDENCE, IMPACT_AZIMUTH = "impact.speed", "impact.incidence_deg", "impact.azimuth_deg"
 ARRIVAL = (IMPACT_SPEED, IMPACT_INCIDENCE)
+# A delivery option beside the keys of [delivery]: the factor of all errors, one input however these go together.
+ERRORS = "delivery.errors"
 # Where on the bed the lander's centre of mass starts [m].
 PLACE = ("impact.place.x", "impact.place.y")
 # Attitude and spin of a lander as a touchdown begins, in the frame of the bed.

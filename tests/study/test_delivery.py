@@ -128,6 +128,15 @@ def test_correlations_that_cannot_be_are_refused(pairs: Any, words: str) -> None
     assert words.replace("'", '"') in refused(SURFACE | {"correlations": pairs}).replace("'", '"')
 
 
+def test_an_expansion_has_no_correlated_inputs() -> None:
+    """Its designs and indices are those of independent ones; where a lander arrives is none of its inputs."""
+    angle, pair = {"distribution": "uniform", "lower": 0.0, "upper": 40.0}, ["speed", "incidence_deg", -0.3]
+    given = {**SURFACE, "incidence_deg": angle, "correlations": [pair]}
+    said = "delivery.correlations has speed and incidence_deg, and [expansion] takes all inputs as independent"
+    assert said in refused(given, expansion={})
+    assert checked(given | {"correlations": [["north_error", "speed", 0.3]]}, expansion={}).expansion is not None
+
+
 def test_states_count_from_the_study_file_and_are_at_least_as_many_as_journeys(tmp_path: Path) -> None:
     (tmp_path / "states.csv").write_text(STATES)
     given = AIM | {"frame": "body_fixed", "states": "states.csv"}

@@ -25,7 +25,7 @@ from lithobrake.results.run_results import CountedShare
 from lithobrake.statements.journeys import emulated_ends as emulated_statement
 from lithobrake.study import Study
 from lithobrake.vocabulary.constants import REFIT_COUNT
-from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.estimate import LEVEL, Estimate
 from lithobrake.vocabulary.outcomes import FlightStatus, JourneyEnd, SampleOutcome, TouchdownOutcome
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, REST_NUMBERS, UNKNOWN_END
 
@@ -182,7 +182,7 @@ class Refits:
             found[name] = found[name].within(one.lower, one.upper)
         return found
 
-    def share(self, met: np.ndarray, of: np.ndarray, refit: np.ndarray) -> Estimate:
+    def share(self, met: np.ndarray, of: np.ndarray, refit: np.ndarray, level: float = LEVEL) -> Estimate:
         """Share of some landers that have met an event, with its bounds where there are any, all [lander_count].
 
         of: which landers it is a share of; refit: that each has met.
@@ -193,7 +193,8 @@ class Refits:
         told = totals >= 2
         if self.why is not None or told.sum() < REFIT_COUNT // 2:
             return Estimate(share, None, None)
-        return replace(refit_interval(counts[told], totals[told], self.bed_count, self.run_count), value=share)
+        found = refit_interval(counts[told], totals[told], self.bed_count, self.run_count, level)
+        return replace(found, value=share)
 
     def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
         """The same with bounds of an outcome that no run had from 0 to what so many runs can say of it."""

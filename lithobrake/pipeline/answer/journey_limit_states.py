@@ -11,6 +11,7 @@ from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.analysis.unseen_event import runs_by_bed
 from lithobrake.files.reading import read_rows
+from lithobrake.pipeline.answer.correlated_inputs import significant_together
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.mean_miss import mean_miss, offsets
@@ -183,4 +184,4 @@ def _inputs(job: Job, met: np.ndarray, table: JourneyTable) -> dict[str, LimitSt
     if not laws:
         return {}
     found = analysis.failure_inputs(laws, np.column_stack(x), own, runs.inputs["bed"], job.study.seed)
-    return {key: LimitStateInput(**vars(one), found=one.found) for key, one in found.items()}
+    return significant_together(job.study, found)

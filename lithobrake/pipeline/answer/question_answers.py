@@ -7,6 +7,7 @@ import numpy as np
 
 from lithobrake import analysis
 from lithobrake.analysis.subset_simulation import limit_state_met
+from lithobrake.pipeline.answer.correlated_inputs import independent_columns, significant_together
 from lithobrake.pipeline.answer.emulated_ends import sample_fates
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.journey_limit_states import journey_limit_state
@@ -17,7 +18,7 @@ from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.first_touchdown.samples import Samples
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.questions import LimitStateInput, LimitStateResult
+from lithobrake.results.questions import LimitStateResult
 from lithobrake.results.run_results import CountedShare
 from lithobrake.statements import limits
 from lithobrake.study import Study
@@ -75,11 +76,11 @@ def _one(
             f"limit_states.{name} is {state.text!r}, which cannot be decided for any run (runs.sqlite lists how each "
             "ended); choose another condition, or correct the outcomes"
         )
-    x = runs.columns(list(inputs))
+    x, apart = runs.columns(list(inputs)), independent_columns(study, {name: runs.inputs[name] for name in inputs})
     found = analysis.failure_probability(
         failing,
         runs.inputs["bed"],
-        terms=analysis.regression_terms(inputs, x),
+        terms=analysis.regression_terms(inputs, apart),
         drawn=_drawn(state, of_samples),
         like_missing=left_in_flight(runs),
         why=why_no_interval(study),
@@ -95,7 +96,7 @@ def _one(
         tail_limit=found.tail_limit,
         why=found.by_runs.share.why_missing,
         failing_runs=float(np.nansum(failing)),
-        inputs={key: LimitStateInput(**vars(one), found=one.found) for key, one in of_inputs.items()},
+        inputs=significant_together(study, of_inputs),
         statement="",
     )
 

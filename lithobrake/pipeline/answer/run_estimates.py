@@ -10,6 +10,7 @@ import numpy as np
 from lithobrake import analysis
 from lithobrake.chaos import Empirical
 from lithobrake.pipeline.answer import run_answers
+from lithobrake.pipeline.answer.correlated_inputs import independent_columns
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides
 from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
@@ -149,7 +150,8 @@ def _moved(one: run_results.CountedShare, share: float) -> run_results.CountedSh
 def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> LandingFraction:
     """The estimate of an event from its share of the flights of each run [run_count], NaN where that is not known."""
     inputs = DrawnDesign(study).lawful_inputs
-    terms = analysis.regression_terms(inputs, runs.columns(list(inputs)))
+    x = independent_columns(study, {name: runs.inputs[name] for name in inputs})
+    terms = analysis.regression_terms(inputs, x)
     bed, why = runs.inputs["bed"], run_answers.why_no_interval(study)
     return analysis.share_estimate(share, bed, terms=terms, like_missing=run_answers.left_in_flight(runs), why=why)
 
@@ -244,7 +246,8 @@ def _parts(
     if not inputs:
         return None
     laws = {name: law for name, (law, _) in inputs.items()}
-    x = np.column_stack([values for _, values in inputs.values()])
+    # What goes together is one input: the arrival as a whole has the variance of all its terms.
+    x = independent_columns(job.study, {name: values for name, (_, values) in inputs.items()})
     soil = [key for key in laws if key.startswith(SOIL)]
     attitude = independent_terms(job.design, runs.inputs)
     found = analysis.variance_shares(laws, x, y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=twins)

@@ -1,6 +1,6 @@
 """Every delivery option: the landers of the study with other arrivals, followed to their ends."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,14 +17,15 @@ from lithobrake.pipeline.journeys.hard_ground import hard_ground_dependencies, o
 from lithobrake.pipeline.journeys.landers import StudyLanders, followed
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, why_no_emulator
 from lithobrake.study import Study
-from lithobrake.study.delivery_sections import arrival_key
+from lithobrake.study.delivery_sections import ERROR_KEYS, arrival_key
 from lithobrake.study.design_sections import SIDE
 from lithobrake.study.lander_section import directions_of_sides
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.file_names import AIM_FILE, TOUCHDOWN_EMULATOR_FILE
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, IMPACT_AZIMUTH, ORIENTATION, REST_NUMBERS, Row
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, ERRORS, IMPACT_AZIMUTH, ORIENTATION, REST_NUMBERS, Row
 
 SITE = "site."
+Options = Sequence[Mapping[str, float]]
 
 
 def option_files(study: Study) -> list[str]:
@@ -43,7 +44,7 @@ def follow_options(job: Job) -> None:
     All have the same landers: soil, bed, site and refit of each are drawn once, and only what is chosen differs. With
     [hard_ground] they are followed on hard ground too.
     """
-    landers = option_landers(job.design)
+    landers = option_landers(job.design, job.study.aim.aims(), job.study.aim.lander_count * REFIT_COUNT)
     begin, rows, emulator_file = landers.begin, [], job.folder.read_json(TOUCHDOWN_EMULATOR_FILE)
     if why_no_emulator(emulator_file) is None:
         emulator = TouchdownEmulator.read(job.design, job.folder)
@@ -58,20 +59,27 @@ def follow_options(job: Job) -> None:
     write_table(job.folder, AIM_FILE, AIM_COLUMNS, rows)
 
 
-def option_landers(design: DrawnDesign) -> DeliveredLanders:
-    """The landers of all options, one option after the other; of a release all options have the same."""
+def option_landers(design: DrawnDesign, options: Options, count: int) -> DeliveredLanders:
+    """So many landers of each option, one option after the other; all options have the same landers.
+
+    options: values by dotted key of [delivery], and the factor of all its errors; what an option does not name is
+    sampled.
+    """
     if not design.is_flown:
-        return DeliveredLanders.at_surface(option_arrivals(design))
-    count = design.study.aim.lander_count * REFIT_COUNT
-    studies = [_with_offsets(design.study, option) for option in design.study.aim.aims()]
+        return DeliveredLanders.at_surface(option_arrivals(design, options, count))
+    studies = [_delivered_so(design.study, option) for option in options]
     return DeliveredLanders.joined([DeliveredLanders.flown(DrawnDesign(study), count) for study in studies])
 
 
-def _with_offsets(study: Study, option: Mapping[str, float]) -> Study:
-    """The study with other offsets of its delivery."""
-    assert study.delivery is not None
-    changed = {name.partition(".")[2]: value for name, value in option.items()}
-    return study.model_copy(update={"delivery": study.delivery.model_copy(update=changed)})
+def _delivered_so(study: Study, option: Mapping[str, float]) -> Study:
+    """The study with other offsets of its release or states, and errors of the release so many times as large."""
+    delivery = study.delivery
+    assert delivery is not None
+    changed: dict[str, Any] = {name.partition(".")[2]: value for name, value in option.items() if name != ERRORS}
+    if ERRORS in option:
+        assert delivery.release is not None
+        changed["release"] = delivery.release.with_errors(option[ERRORS])
+    return study.model_copy(update={"delivery": delivery.model_copy(update=changed)})
 
 
 def _rows(job: Job, ground: str, options: DeliveredLanders, landers: StudyLanders | None) -> list[list[Any]]:
@@ -82,18 +90,23 @@ def _rows(job: Job, ground: str, options: DeliveredLanders, landers: StudyLander
     return [[ground, one // count, refit, end, *row] for one, (refit, end, row) in enumerate(columns)]
 
 
-def option_arrivals(design: DrawnDesign) -> Arrivals:
-    """The landers of all options, one option after the other."""
+def option_arrivals(design: DrawnDesign, options: Options, lander_count: int) -> Arrivals:
+    """So many landers of each option that arrive at the surface, one option after the other."""
     study, place = design.study, design.site
-    options = study.aim.aims()
-    one = Arrivals.drawn(design, len(design.rows), study.aim.lander_count * REFIT_COUNT)
+    one = Arrivals.drawn(design, len(design.rows), lander_count)
     count = len(one.rows)
     rows, site = [], {key: np.tile(values, len(options)) for key, values in one.site.items()}
     for number, option in enumerate(options):
-        chosen = {arrival_key(name): value for name, value in option.items()}
+        chosen = {arrival_key(name): value for name, value in option.items() if name != ERRORS}
+        own = slice(number * count, (number + 1) * count)
+        factor = option.get(ERRORS, 1.0)
+        # Options without the key keep their errors to the last bit.
+        for key in ERROR_KEYS if factor != 1.0 else ():
+            # All errors are one input: they go together as before, and a bias stays.
+            site[key][own] = place.medians[key] + factor * (one.site[key] - place.medians[key])
         for name, value in chosen.items():
             if name.startswith(SITE):
-                site[name.removeprefix(SITE)][number * count : (number + 1) * count] = value
+                site[name.removeprefix(SITE)][own] = value
         side = chosen.pop(SIDE, None)
         attitudes = [{}] * count if side is None else _attitudes(study, study.aim.sides[int(side)], one)
         of_impact = {name: value for name, value in chosen.items() if not name.startswith(SITE)}

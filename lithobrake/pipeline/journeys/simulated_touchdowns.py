@@ -148,6 +148,14 @@ def answers_of(records: Sequence[Record]) -> Answers:
     return found
 
 
+class Unanswered:
+    """No model's touchdowns: all of them are left to landings."""
+
+    def answers(self, impacts: ImpactStates) -> Answers:
+        """Nothing is known of any."""
+        return Answers.unknown(len(impacts))
+
+
 @dataclass
 class WithLandings:
     """Another model's touchdowns, and simulated landings where it has no answer, at most `most` of them.

@@ -192,7 +192,7 @@ def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None
 def test_a_side_is_an_option_like_any_other(results: StudyResults) -> None:
     study = check_tables(journey_tables(aim={"grid": {"delivery.speed": [0.05]}, "sides": ["z", "x or y"]}), Path())
     assert study.aim.aims() == [{"delivery.speed": 0.05, "aim.sides": 0.0}, {"delivery.speed": 0.05, "aim.sides": 1.0}]
-    begin = option_arrivals(DrawnDesign(study))
+    begin = option_arrivals(DrawnDesign(study), study.aim.aims(), 100)
     inputs = {name: begin.column(name) for name in (*ORIENTATION, "impact.azimuth_deg")}
     sides = sides_down(study.lander, seen(inputs)[0])
     half = len(sides) // 2

@@ -38,7 +38,7 @@ def test_offsets_go_up_north_and_east_of_the_mean_release() -> None:
 
 def test_all_options_have_the_same_landers_and_move_as_the_offsets() -> None:
     design, count = DrawnDesign(study_of()), 2 * REFITS
-    landers = option_landers(design)
+    landers = option_landers(design, design.study.aim.aims(), count)
     assert len(landers.end) == 3 * count
     # Landers that the study has not followed, each with its refit.
     assert (landers.number.reshape(3, count) == COUNT + np.arange(count)).all()
@@ -65,6 +65,19 @@ def test_landers_that_miss_the_ground_keep_the_end_of_their_flight(tmp_path: Pat
     assert found.number.tolist() == (np.arange(2 * REFITS) % COUNT).tolist()
     rows = found.rest_rows([[one] for one in range(len(found.place))])
     assert [row[0] for row, miss in zip(rows, misses, strict=True) if not miss] == list(range(len(found.place)))
+
+
+def test_the_errors_of_a_release_are_an_option_and_states_have_none(tmp_path: Path) -> None:
+    """The factor of all of them, as one value of a grid like any other."""
+    grid = {"delivery.errors": [0.0, 1.0]}
+    study = check_tables(tables(delivery={"release": deepcopy(RELEASE)}, aim={"grid": grid}), Path())
+    begin = option_landers(DrawnDesign(with_site_gravity(study)), study.aim.aims(), 2 * REFITS).begin
+    same, apart = (begin.origin[:REFITS], begin.origin[-REFITS:])
+    assert np.ptp(same, axis=0).max() < 1e-6
+    assert np.ptp(apart, axis=0).max() > 1.0
+    write_states(tmp_path / "states.csv")
+    with pytest.raises(StudyError, match=r'"delivery\.errors" is no aim; allowed: delivery\.offset_up'):
+        check_tables(tables(delivery={"states": str(tmp_path / "states.csv")}, aim={"grid": grid}), Path())
 
 
 @pytest.mark.parametrize(("changes", "words"), [
