@@ -180,8 +180,7 @@ def rest_map(results: "Results", rest: "JourneyRest") -> str:
         return ""
     said = []
     if rest.regions:
-        shares = " and ".join(percent(one.share) for one in rest.regions)
-        said.append(f"Lines: the smallest regions that hold {shares} of the landers at rest.")
+        said.append("Lines: the smallest regions that hold these shares of the landers at rest.")
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
     if results.delivery is not None and results.delivery.regions:

@@ -35,6 +35,7 @@ from lithobrake.report.pages.first_touchdown import (
 )
 from lithobrake.report.tables import dispersion_tables as dispersion
 from lithobrake.report.tables import journey_tables
+from lithobrake.report.tables.ground_strip import ground_strip
 from lithobrake.report.tables.limit_state_tables import limit_state_tables
 from lithobrake.results.page_data import PageData, PageJourneys
 from lithobrake.statements import captions, grounds
@@ -62,7 +63,12 @@ def study_content(data: PageData) -> Content:
     else:
         sections = _joined(first, asked)
     return Content(
-        page_answer(data), page_warnings(data), page_tiles(data), _first_plot(data), [*sections, _appendix(data)]
+        page_answer(data),
+        page_warnings(data),
+        page_tiles(data),
+        _first_plot(data),
+        [*sections, _appendix(data)],
+        ground_strip(data),
     )
 
 
