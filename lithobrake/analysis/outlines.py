@@ -43,9 +43,9 @@ def _distances(points: Array, start: Array, end: Array) -> Array:
 
 
 def to_the_tolerance(outline: Array, tolerance: float) -> Array:
-    """Latitude and longitude [deg], [count, 2], rounded to decimals that move a place by a hundredth of a tolerance [rad].
+    """Latitude and longitude [deg], [count, 2], to as many decimals as a tolerance [rad] deserves.
 
-    Longitudes stay in (-180, 180].
+    Neither angle moves by more than a hundredth of it. Longitudes stay in (-180, 180].
     """
     decimals = max(0, math.ceil(-math.log10(2.0 * ROUNDING * math.degrees(tolerance))))
     latitude, longitude = np.round(outline, decimals).T + 0.0

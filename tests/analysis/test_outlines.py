@@ -1,6 +1,7 @@
 """Thinned outlines against shapes whose corners, areas and shares are known."""
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ def circle(radius: float, count: int) -> np.ndarray:
 
 def away(points: np.ndarray, line: np.ndarray) -> float:
     """The largest distance of points from a closed line, by points along it."""
-    dense = np.concatenate([np.linspace(a, b, 200) for a, b in zip(line[:-1], line[1:], strict=True)])
+    dense = np.concatenate([np.linspace(a, b, 200) for a, b in pairwise(line)])
     return max(float(np.linalg.norm(dense - point, axis=1).min()) for point in points)
 
 
@@ -31,7 +32,7 @@ def area(line: np.ndarray) -> float:
 
 def test_a_square_with_many_points_on_its_sides_keeps_its_corners() -> None:
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]])
-    sides = [np.linspace(a, b, 50)[:-1] for a, b in zip(corners[:-1], corners[1:], strict=True)]
+    sides = [np.linspace(a, b, 50)[:-1] for a, b in pairwise(corners)]
     assert thinned(np.concatenate([*sides, corners[:1]]), 0.01).tolist() == corners.tolist()
 
 
@@ -60,8 +61,7 @@ def test_rounding_moves_a_place_by_a_hundredth_of_the_tolerance_at_most() -> Non
     assert east == 180.0
 
 
-@pytest.mark.parametrize("count", [20, 96, 1000])
-@pytest.mark.parametrize("spread", [(4.0, 2.0), (30.0, 20.0)])
+@pytest.mark.parametrize(("count", "spread"), [(20, (4.0, 2.0)), (96, (30.0, 20.0)), (1000, (4.0, 2.0))])
 def test_thinned_outlines_keep_area_and_share(
     count: int, spread: tuple[float, float], monkeypatch: pytest.MonkeyPatch
 ) -> None:

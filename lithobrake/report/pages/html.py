@@ -173,7 +173,8 @@ def _strip_cell(column: StripColumn, row: int) -> str:
     ends = [100.0 * min(max(one / column.end, 0.0), 1.0) for one in (found.bounds or (found.value, found.value))]
     value, mark = column.shown[row].partition(" ("), 100.0 * min(found.value / column.end, 1.0)
     words = f"<b>{in_html(value[0])}</b>{in_html(value[1] + value[2])}"
-    bar = f'<i style="left:{ends[0]:.3g}%;width:{ends[1] - ends[0]:.3g}%"></i><i class="mark" style="left:{mark:.3g}%"></i>'
+    bar = f'<i style="left:{ends[0]:.3g}%;width:{ends[1] - ends[0]:.3g}%"></i>'
+    bar += f'<i class="mark" style="left:{mark:.3g}%"></i>'
     return f'<td>{words}<span class="scale" aria-hidden="true">{bar}</span></td>'
 
 

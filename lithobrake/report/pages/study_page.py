@@ -21,7 +21,14 @@ from lithobrake.report.figures.place_map import (
     whole_figure,
 )
 from lithobrake.report.figures.run_figures import variance_figure
-from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.share_figures import (
+    RestSpread,
+    ShareBar,
+    attitude_figure,
+    counts_figure,
+    folded,
+    spreads_figure,
+)
 from lithobrake.report.live.body_view import body_views
 from lithobrake.report.live.explorer import touchdown_sections
 from lithobrake.report.live.landing_view import landing_views
@@ -197,9 +204,9 @@ def _draw_partner(data: PageData, journeys: PageJourneys) -> "Figure":
 
 
 def end_shares(data: PageData) -> list[ShareBar]:
-    """How the journeys end, as bars have it."""
+    """How the journeys end, as bars have it; ends that no lander met are one bar."""
     names = end_words(data.results.site)
-    return [ShareBar(names[name], one.share, END_COLOURS[name]) for name, one in data.results.ends.items()]
+    return folded([ShareBar(names[name], one.share, END_COLOURS[name]) for name, one in data.results.ends.items()])
 
 
 def _draw_ends(data: PageData) -> "Figure":
