@@ -221,7 +221,7 @@ def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, 
     assert (page, numbers, table) == site_map_files(tmp_path / "sites")
     assert results_in(SiteMap, json.loads(numbers.read_text(encoding="utf-8"))) == site_map
     text = page.read_text(encoding="utf-8")
-    assert text.count("<figure") == 2
+    assert text.count("<figure") == 3
     assert "cannot be distinguished from the best" in text
     with table.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
