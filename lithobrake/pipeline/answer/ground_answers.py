@@ -51,8 +51,10 @@ def finer_ground(design: DrawnDesign, table: JourneyTable) -> FinerGround | None
 
 def _conditional(here: JourneyTable, why: str | None) -> tuple[CountedShare, Estimate, Estimate]:
     """Of journeys on some of the grounds: fraction at rest, median time to rest and distance of those at rest."""
-    times = (quantile_estimate(here.of_rest(name), here.bed, MEDIAN, why=why) for name in ("time_s", "distance"))
-    return end_share(here.rests, here.bed, why), *times
+    time, distance = (
+        quantile_estimate(here.of_rest(name), here.bed, MEDIAN, why=why) for name in ("time_s", "distance")
+    )
+    return end_share(here.rests, here.bed, why), time, distance
 
 
 def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None:
