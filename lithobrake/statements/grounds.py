@@ -10,7 +10,6 @@ from lithobrake.vocabulary.number_words import LEVEL, intervals, number, percent
 
 if TYPE_CHECKING:
     from lithobrake.results.ground_results import FinerGround, GroundKindResults, OverGrounds
-    from lithobrake.results.run_results import CountedShare
     from lithobrake.results.site_results import BedNumbers
 
 
@@ -39,7 +38,8 @@ def _bounds(one: Estimate) -> str:
 def by_kind(found: "Mapping[str, GroundKindResults]") -> list[str]:
     """What each kind of ground gives alone."""
     listed = [
-        f"{name} ({percent(one.weight)}, grains of {sizes(one.grain_size_m)} m) {alone(one.at_rest, one.time_s)}"
+        f"{name} ({percent(one.weight)}, grains of {sizes(one.grain_size_m)} m) {with_interval(one.at_rest.share)} at "
+        f"rest" + (f", median time {time_words(one.time_s)}" if one.time_s.is_known else "")
         for name, one in found.items()
     ]
     return [f"By kind of ground: {'; '.join(listed)}."] if listed else []
@@ -49,19 +49,11 @@ def finer(found: "FinerGround | None") -> list[str]:
     """For how much of the ground coarser beds stand."""
     if found is None:
         return []
-    size, there = number(found.finest_m, 2), ""
-    if found.at_rest is not None and found.time_s is not None:
-        there = f"on them {alone(found.at_rest, found.time_s)}; "
+    size = number(found.finest_m, 2)
     return [
-        f"Beds of grains of {size} m stand for all finer ground, {percent(found.share)} of what the study allows: "
-        f"{there}finer grains could change the answer."
+        f"Beds of grains of {size} m stand for all finer ground, {percent(found.share)} of what the study allows; "
+        "finer grains could change the answer."
     ]
-
-
-def alone(at_rest: "CountedShare", time_s: Estimate) -> str:
-    """What one kind of ground gives alone."""
-    median = f", median time {time_words(time_s)}" if time_s.is_known else ""
-    return f"{with_interval(at_rest.share)} at rest{median}"
 
 
 def strip_note() -> str:
