@@ -56,12 +56,10 @@ def finer(found: "FinerGround | None") -> list[str]:
     ]
 
 
-def strip_note() -> str:
-    """Bars, marks and rows of the answers on each ground."""
-    return (
-        f"Marks: values; bars: {intervals()}, in the first rows of the mean over beds of that ground, in the last of "
-        "one ground throughout."
-    )
+def strip_note(*, has_one: bool) -> str:
+    """Bars, marks and rows of the answers on each ground; has_one: whether the last is of one ground throughout."""
+    last = "; in the last row of one ground throughout" if has_one else ""
+    return f"Marks: values; bars: {intervals()} of the mean over beds of that ground{last}."
 
 
 def kind_words(weight: float, ends: tuple[float, float]) -> str:

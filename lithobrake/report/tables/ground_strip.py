@@ -39,7 +39,7 @@ def ground_strip(data: PageData) -> Strip | None:
         _quantiles(f"median time [{unit}]", times, size),
         _quantiles("median distance [m]", distances, 1.0),
     ]
-    return Strip("By kind of ground", names, columns, strip_note())
+    return Strip("By kind of ground", names, columns, strip_note(has_one=over is not None))
 
 
 def _quantiles(words: str, found: Sequence[Estimate], unit: float) -> StripColumn:
