@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import distance
 
 from lithobrake.analysis.equal_area import EqualAreaMap, latitude_longitude
+from lithobrake.analysis.outlines import thinned, to_the_tolerance
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.given_numbers import numbers
 
@@ -28,6 +29,8 @@ MARGIN, REACH = 4.0, 3.0
 FEWEST_CELLS, MOST_CELLS = 300, 1200
 # Cells of a region, and then points of its cells and outlines, among which its extent is looked for.
 EXTENT_CELLS, EXTENT_POINTS = 1500, 3000
+# Of the bandwidth, along each of its axes: how far a thinned outline may lie from the edge of its region.
+TOLERANCE = 0.1
 # Points whose distances from all others are worked out at once: bounds the memory.
 BLOCK = 1000
 
@@ -128,7 +131,8 @@ class DensityRegion:
     largest_extent_m  largest distance between two of its points, straight through the body
     island_extents_m  the same of each of its separate parts, the one of the largest area first
     outlines          latitude and east longitude in (-180, 180] [deg] along its edge, [count, 2] each, all of them
-                      closed: an edge that crosses the date line goes on from 180 at -180
+                      closed: an edge that crosses the date line goes on from 180 at -180; area and extents are of the
+                      edge before it was thinned
     """
 
     share: float
@@ -196,7 +200,8 @@ def highest_density(points: ArrayLike, shares: Sequence[float] = (0.5, 0.95)) ->
     points times n^(-1/3) (Scott's rule), less where half of the points lie closer together than in a normal law of
     that covariance. A region is where the density exceeds a level; the level is that which the share of the points
     exceeds, each by the density of the others, so that the region holds the share of the next landers as well. No
-    region reaches farther than three bandwidths from every point.
+    region reaches farther than three bandwidths from every point. Outlines keep within a tenth of the bandwidth of
+    the edge.
     Fewer than five points, or points on a line, have no region, and `why` has the reason. Raises ValueError for points
     that are not finite or lie at the origin, and for shares outside 0 to 1.
     Two clouds far apart widen the bandwidth, and with it the regions. Source: [Scott-2015], section 6.3 (bandwidth);
@@ -251,7 +256,13 @@ def _region(density: _Density, grid: tuple[Array, Array, Array], share: float) -
     largest_first = [edges[one] for one in np.argsort(-areas, kind="stable") if areas[one] > 0.0]
     islands = tuple(_extent(edge) * density.map.radius for edge in largest_first)
     area = float(areas.sum()) * float(np.prod(density.bandwidth))
-    return DensityRegion(share, area, extent, islands, tuple(map(latitude_longitude, edges)))
+    return DensityRegion(share, area, extent, islands, tuple(_outline(density, line) for line in lines))
+
+
+def _outline(density: _Density, line: Array) -> Array:
+    """Latitude and longitude [deg], [fewer, 2], along a closed edge [count, 2] in bandwidths."""
+    few = density.map.directions(density.places(thinned(line, TOLERANCE)))
+    return to_the_tolerance(latitude_longitude(few), TOLERANCE * float(density.bandwidth.min()) / density.map.radius)
 
 
 def _enclosed(line: Array) -> float:

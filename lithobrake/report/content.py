@@ -7,6 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING
 
 from lithobrake.statements.answers import Tile
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import RAISED, number
 
 if TYPE_CHECKING:
@@ -83,11 +84,38 @@ class PageSection:
 
 
 @dataclass(frozen=True)
+class StripColumn:
+    """One quantity of a strip: its words with the unit, an estimate for each row, in that unit, its words, and the end
+    of the scale, which begins at 0.
+
+    A row may have no estimate, and no words where they stand elsewhere on the same screen.
+    """
+
+    words: str
+    found: Sequence[Estimate | None]
+    shown: Sequence[str]
+    end: float
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Answers on each part of what nobody knows, one below the other on the same scales.
+
+    rows: name and what it is, of each; note: what bars and marks are.
+    """
+
+    title: str
+    rows: Sequence[tuple[str, str]]
+    columns: Sequence[StripColumn]
+    note: str
+
+
+@dataclass(frozen=True)
 class Content:
     """What a page says of its study.
 
     answer: in one line; warnings: what to beware of; tiles: the numbers to take away; first: the figure beside them,
-    if there is one; sections: all else, in their order.
+    if there is one; sections: all else, in their order; strip: the answer on each ground, where several are allowed.
     """
 
     answer: str
@@ -95,6 +123,7 @@ class Content:
     tiles: Sequence[Tile]
     first: Plot | None
     sections: Sequence[PageSection]
+    strip: Strip | None = None
 
     @property
     def plots(self) -> list[Plot]:

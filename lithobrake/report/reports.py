@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from lithobrake.files.atomic import make_folder, write_whole
 from lithobrake.report.content import Content, PageSection, PageTable, Panel, Plot
 from lithobrake.report.figures.option_figures import DifferenceRow, difference_figure
-from lithobrake.report.figures.site_figures import agreement_figure, drawn_and_flat, sites_figure
+from lithobrake.report.figures.site_figures import agreement_figure, drawn_and_flat, rest_figure, sites_figure
 from lithobrake.report.figures.style import STYLE, figure_style
 from lithobrake.report.pages.html import data_files, page, picture_files
 from lithobrake.report.pages.study_page import study_content
@@ -156,15 +156,14 @@ def _settings(comparison: StudyComparison) -> PageTable:
 def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
     """Write index.html and its figures into a folder, which is made; returns the page."""
     words = mapped.caption(site_map) + mapped.everywhere(drawn_and_flat(site_map)[1])
-    first = Plot("sites", "Sites", words, lambda: sites_figure(site_map))
+    first = Plot("rest", "Landers at rest by site", mapped.rest_caption(site_map), lambda: rest_figure(site_map))
+    every = Plot("sites", "Sites", words, lambda: sites_figure(site_map))
     sections = [
-        PageSection("Sites", tables=[_best(site_map), _site_table(site_map, site_map.cells, "All sites")]),
-        *([_of_agreement(site_map)] if site_map.agreement else []),
+        PageSection("Sites", [every], [_best(site_map), _site_table(site_map, site_map.cells, "All sites")]),
+        _of_agreement(site_map),
         PageSection("Files", tables=[_provenance()], texts={"The study file": study_text}),
     ]
-    content = Content(
-        site_map.statement, mapped.warnings(site_map), [Tile(*one) for one in mapped.tiles(site_map)], first, sections
-    )
+    content = Content(mapped.page_answer(site_map), mapped.warnings(site_map), [], first, sections)
     panels = {name: panel for name, (panel, _) in drawn_panels(place, content.plots, lambda done, total: None).items()}
     text = page(site_map.title, site_map.of, content, panels, kind="Map of sites")
     path = place / "index.html"
@@ -173,12 +172,15 @@ def write_sites(site_map: SiteMap, study_text: str, place: Path) -> Path:
 
 
 def _of_agreement(site_map: SiteMap) -> PageSection:
-    """How the emulator and the study's own landings agree."""
+    """How the emulator and the study's own landings agree, or why that is not known."""
+    said = [] if site_map.at_rest is None else [mapped.compared(site_map)]
+    if not site_map.agreement:
+        return PageSection("How sure", said=said)
     plot = Plot(
         *("agreement", "Emulator and landings", mapped.agreement_caption(site_map)),
         lambda: agreement_figure(site_map.agreement, site_map.level),
     )
-    return PageSection("How sure", [plot], [_agreement(site_map)])
+    return PageSection("How sure", [plot], [_agreement(site_map)], said=said)
 
 
 def _agreement(site_map: SiteMap) -> PageTable:

@@ -21,7 +21,7 @@ class RestRegion:
     """largest distance between two of its points"""
     outlines: tuple[tuple[tuple[float, float], ...], ...]
     """latitude and east longitude [deg] along its edges, all closed; one that crosses the date line goes on from 180 at
-    -180"""
+    -180; they keep within a tenth of the bandwidth of the density of the edges that area and extents are of"""
     island_extents_m: tuple[float, ...] = ()
     """largest distance between two points of each of its separate parts, the one of the largest area first"""
     __repr__ = short_repr

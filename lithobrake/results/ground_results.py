@@ -31,6 +31,14 @@ class FinerGround:
     """mean diameter of these beds [m]"""
     share: float
     """share of the ground, by the weights and sizes of the study file"""
+    journeys: int = 0
+    """journeys whose first touchdown is on one of these beds"""
+    at_rest: CountedShare | None = None
+    """fraction of these landers that comes to rest; null without any"""
+    time_s: Number | None = None
+    """median time from the first touchdown to rest of these landers [s]; null without any"""
+    distance_m: Number | None = None
+    """median distance from the aim point of those at rest [m]; null without any"""
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """The answer of a study in sentences, as summary.json and the page have it, and the numbers beside it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from lithobrake.statements import labels, touchdowns
@@ -222,24 +222,24 @@ def _expansion_tiles(data: "PageExpansion", results: "Results") -> list[Tile]:
 
 
 def _rest_tiles(data: "PageData", journeys: "PageJourneys") -> list[Tile]:
-    """When and where landers rest, and the likeliest end other than that; every other end where none does."""
+    """When and where landers rest, and the likeliest end other than that; every other end where none does.
+
+    Where the page has the answer on each ground, the limit states alone; those within a circle stand in its first line.
+    """
     count, rest = len(journeys.table["end"]), journeys.rest
     others = {name: one for name, one in data.results.ends.items() if name != JourneyEnd.AT_REST}
-    asked = [_asked(name, one) for name, one in data.results.limit_states.items() if one.of_journey]
+    states = {name: one for name, one in data.results.limit_states.items() if one.of_journey and one.radius_m is None}
+    asked = [_asked(name, one) for name, one in states.items()]
+    if data.results.grounds:
+        return asked
     if not rest.time_s.median.is_known:
         return [*asked, *(_end(data, name, one, count) for name, one in others.items())]
     size, unit = time_unit(rest)
-    time, distance, over = rest.time_s, rest.distance_m, data.results.over_grounds
-    where = ""
-    if over is not None and over.time_s.lower is not None:
-        # The interval of one ground, as in the answer.
-        time, distance = replace(time, median=over.time_s), replace(distance, median=over.distance_m)
-        where = ", on one ground"
     likeliest = max(others, key=lambda name: (others[name].share.value, others[name].share.upper or 0.0))
     return [
         *asked,
-        _quantile(time, unit, f"median time to rest{where}", size),
-        _quantile(distance, "m", f"median distance from the aim point{where}"),
+        _quantile(rest.time_s, unit, "median time to rest", size),
+        _quantile(rest.distance_m, "m", "median distance from the aim point"),
         _region(rest.regions[-1]) if rest.regions else _quantile(rest.contacts, "contacts", "median"),
         _end(data, likeliest, others[likeliest], count),
     ]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from lithobrake.statements.journeys import time_words
 from lithobrake.statements.labels import quantile
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import LEVEL, number, percent, span, with_interval
+from lithobrake.vocabulary.number_words import LEVEL, intervals, number, percent, span, with_interval
 
 if TYPE_CHECKING:
     from lithobrake.results.ground_results import FinerGround, GroundKindResults, OverGrounds
@@ -54,6 +54,22 @@ def finer(found: "FinerGround | None") -> list[str]:
         f"Beds of grains of {size} m stand for all finer ground, {percent(found.share)} of what the study allows; "
         "finer grains could change the answer."
     ]
+
+
+def strip_note(*, has_one: bool) -> str:
+    """Bars, marks and rows of the answers on each ground; has_one: whether the last is of one ground throughout."""
+    last = "; in the last row of one ground throughout" if has_one else ""
+    return f"Marks: values; bars: {intervals()} of the mean over beds of that ground{last}."
+
+
+def kind_words(weight: float, ends: tuple[float, float]) -> str:
+    """How probable a kind of ground is, and how large its grains."""
+    return f"{percent(weight)}, {sizes(ends)} m"
+
+
+def finest_words(found: "FinerGround") -> str:
+    """How probable the finest ground is, and which grains stand for it."""
+    return f"{percent(found.share)}, up to {number(found.finest_m, 2)} m"
 
 
 def curve_caption() -> str:

@@ -180,8 +180,7 @@ def rest_map(results: "Results", rest: "JourneyRest") -> str:
         return ""
     said = []
     if rest.regions:
-        shares = " and ".join(percent(one.share) for one in rest.regions)
-        said.append(f"Lines: the smallest regions that hold {shares} of the landers at rest.")
+        said.append("Lines: the smallest regions that hold these shares of the landers at rest.")
     elif rest.why_no_regions:
         said.append(f"No regions are drawn: {rest.why_no_regions.rstrip('.')}.")
     if results.delivery is not None and results.delivery.regions:
@@ -223,12 +222,12 @@ def partner_map(results: "Results") -> str:
 
 def times(rest: "JourneyRest") -> str:
     """The figure of times and distances."""
-    said = times_and_distances(rest)
-    more = (
+    if not times_and_distances(rest):
+        return ""
+    return (
         f"Dots: median and 95th percentile; bars: their {intervals()} over beds and impact points, dotted where a "
-        "bound is unknown."
+        "bound is unknown. The table below has their numbers."
     )
-    return " ".join([*said, more]) if said else ""
 
 
 def counts(data: "PageJourneys") -> str:
@@ -245,11 +244,9 @@ def attitude(rest: "JourneyRest") -> str:
     tilt = rest.tilt_deg
     if not rest.faces or tilt is None or not tilt.median.is_known:
         return ""
-    name, most = by_share(rest.faces)[0]
     return (
-        f"The side {name} is down most often, for {with_interval(most.share)} of the landers at rest. Tilt of its "
-        f"axis from the plumb line: median {quantile(tilt.median)} deg, 95th percentile {quantile(tilt.q95)} deg. "
-        f"Brackets and bars: {intervals()}."
+        "Left: shares of the sides that are down. Right: tilt of the axis of that side from the plumb line. Brackets "
+        f"and bars: {intervals()}."
     )
 
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 from lithobrake.results.site_results import MOST_UNKNOWN, SiteMap
 from lithobrake.statements.ends import at_rest
 from lithobrake.statements.journeys import agreement
-from lithobrake.vocabulary.number_words import counted, intervals, out_of, percent, span, time_limit, with_interval
+from lithobrake.statements.labels import area
+from lithobrake.vocabulary.number_words import counted, intervals, out_of, percent, span, with_interval
 
 NOT_COMPARED = (
     "The emulator was not compared with landings, as journey.emulated_count is 0 or landers are flown to the ground."
@@ -25,6 +26,11 @@ def place_words(latitude_deg: float, longitude_deg: float) -> str:
 
 def statement(found: SiteMap) -> str:
     """How many rest, where most do, and whether landings agree."""
+    return page_answer(found) if found.at_rest is None else f"{page_answer(found)} {compared(found)}"
+
+
+def page_answer(found: SiteMap) -> str:
+    """How many rest, and where most do, as a page begins."""
     total, answered = len(found.cells), [site for site in found.cells if site.ends is not None]
     if not answered or found.at_rest is None:
         return (
@@ -35,11 +41,10 @@ def statement(found: SiteMap) -> str:
     where = (
         f"all {total} sites" if len(answered) == total else f"the {out_of(len(answered), total, 'sites')} with a result"
     )
-    said = (
+    return (
         f"{at_rest(found.at_rest, found.duration_s, level=found.level)} over {where}, by site "
-        f"{span(min(shares), max(shares), 0)}."
+        f"{span(min(shares), max(shares), 0)}.{_best(found)}"
     )
-    return f"{said}{_best(found)} {_compared(found)}"
 
 
 def _best(found: SiteMap) -> str:
@@ -55,7 +60,7 @@ def _best(found: SiteMap) -> str:
     return f" {count} {cannot}, at {place_words(site.latitude_deg, site.longitude_deg)}."
 
 
-def _compared(found: SiteMap) -> str:
+def compared(found: SiteMap) -> str:
     """Whether emulator and landings agree."""
     if not found.agreement:
         return NOT_COMPARED
@@ -82,7 +87,7 @@ def population(found: SiteMap) -> str:
     )
     return (
         f"{found.landers} landers per site, delivered as in the study except for their aim points, which are spread "
-        f"evenly over its {found.area_m2:.3g} m2; every site has the same landers. {covered.rstrip('.')}. They do "
+        f"evenly over its {area(found.area_m2)}; every site has the same landers. {covered.rstrip('.')}. They do "
         "not cover soils outside the ranges of the study, nor the model error of the emulator, which the comparison "
         f"with landings tests. A site has no result where {_beyond()}."
     )
@@ -107,20 +112,13 @@ def warnings(found: SiteMap) -> list[str]:
     return said
 
 
-def tiles(found: SiteMap) -> list[tuple[str, str, str]]:
-    """The numbers of the map beside its sentence: value, unit and words of each."""
-    if found.at_rest is None:
-        return []
-    total, best = f"of {len(found.cells)}", sum(site.not_worse for site in found.cells)
-    return [
-        (str(best), total, "sites cannot be distinguished from the best"),
-        (str(found.answered), total, "sites have a result"),
-        (str(found.landers), "landers", f"at each site, followed for up to {time_limit(found.duration_s)}"),
-    ]
+def rest_caption(found: SiteMap) -> str:
+    """The map beside the answer."""
+    return f"Fraction of the landers that comes to rest, by site of {found.body}."
 
 
 def caption(found: SiteMap) -> str:
-    """The figure of the sites."""
+    """The figure of all numbers of the sites."""
     light = "; light is the mean over a day and the seasons of the study" if found.cells[0].light else ""
     return (
         f"The same delivery to each of {len(found.cells)} sites of {found.body}, in Hammer's equal-area projection "

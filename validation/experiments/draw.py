@@ -77,7 +77,7 @@ def draw_exponents(axis: Axes, beds: dict[str, tuple[Row, Row]]) -> None:
     ):
         found = [density_exponent(light, heavy, depth_of) for light, heavy in beds.values()]
         axis.plot(found, at, "o", color=ink, mfc=face, label=text)
-    axis.set_yticks(at, [short(name) for name in beds], fontsize=7)
+    axis.set_yticks(at, [short(name) for name in beds], fontsize=8)
     axis.set(xlabel="exponent of density", xlim=(0.4, 1.0))
     legend_below(axis)
 

@@ -9,12 +9,15 @@ from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.run_answers import is_on_one_ground, why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.results.ground_results import FinerGround, GroundBed, GroundCurve, GroundKindResults, OverGrounds
-from lithobrake.study import Study
+from lithobrake.results.run_results import CountedShare
 from lithobrake.study.ground_beds import BedGround, finer_share, finest, mean_weights
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import MEDIAN
 
 # Beds of fewer grounds show no curve.
 FEWEST_OF_CURVE = 6
+# Sizes of grains that differ by less than this part are one.
+SAME_SIZE = 1e-9
 
 
 def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None:
@@ -34,11 +37,24 @@ def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None
     )
 
 
-def finer_ground(study: Study) -> FinerGround | None:
-    """Ground finer than any bed; None where there is none."""
+def finer_ground(design: DrawnDesign, table: JourneyTable) -> FinerGround | None:
+    """Ground finer than any bed, and the journeys on the finest beds, which stand for it; None where there is none."""
+    study = design.study
     if study.ground is None or (share := finer_share(study)) == 0.0:
         return None
-    return FinerGround(finest(study), share)
+    size = np.array([one.size for one in design.grounds.each])
+    here = table.taken(np.flatnonzero(np.isclose(size[table.bed], finest(study), rtol=SAME_SIZE, atol=0.0)))
+    if not len(here.end):
+        return FinerGround(finest(study), share)
+    return FinerGround(finest(study), share, len(here.end), *_conditional(here, why_no_interval(study)))
+
+
+def _conditional(here: JourneyTable, why: str | None) -> tuple[CountedShare, Estimate, Estimate]:
+    """Of journeys on some of the grounds: fraction at rest, median time to rest and distance of those at rest."""
+    time, distance = (
+        quantile_estimate(here.of_rest(name), here.bed, MEDIAN, why=why) for name in ("time_s", "distance")
+    )
+    return end_share(here.rests, here.bed, why), time, distance
 
 
 def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None:
@@ -81,15 +97,15 @@ def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKi
         here = table.taken(np.flatnonzero(own))
         if not len(here.end):
             continue
-        faces = here.face[here.rests]
+        faces, (at_rest, time, distance) = here.face[here.rests], _conditional(here, why)
         found[name] = GroundKindResults(
             weight=weights[name],
             beds=len(np.unique(here.bed)),
             journeys=len(here.end),
             grain_size_m=(float(sizes[beds].min()), float(sizes[beds].max())),
-            at_rest=end_share(here.rests, here.bed, why),
-            time_s=quantile_estimate(here.of_rest("time_s"), here.bed, MEDIAN, why=why),
-            distance_m=quantile_estimate(here.of_rest("distance"), here.bed, MEDIAN, why=why),
+            at_rest=at_rest,
+            time_s=time,
+            distance_m=distance,
             faces={
                 str(face): end_share(faces == face, here.bed[here.rests], why)
                 for face in (np.unique(faces) if here.has_sides else ())

@@ -244,7 +244,7 @@ def _of_landers(job: Job, found: Results) -> Results:
         outputs_of_runs=output_ranges(distinct),
         sides=with_journeys(study, dict(estimates.sides), runs, touchdowns, landed),
         over_grounds=over_grounds(job.design, table),
-        finer_ground=finer_ground(study),
+        finer_ground=finer_ground(job.design, table),
         ground_curve=ground_curve(job.design, table),
         grounds=kind_results(job.design, table),
         soils=soil_shares(job, table),

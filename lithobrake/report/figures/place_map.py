@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lithobrake.report.figures import ground_map, limit_areas
 from lithobrake.report.figures.map_frames import draw_bar, frame_half, frame_local
-from lithobrake.report.figures.share_figures import ShareBar, draw_shares
+from lithobrake.report.figures.share_figures import ShareBar, draw_shares, row_count
 from lithobrake.report.figures.style import QUIET
 from lithobrake.results.dispersion import RestRegion
 from lithobrake.vocabulary.array_types import Array
@@ -132,7 +132,7 @@ def outcomes_figure(shown: PlaceMap, shares: list[ShareBar], whole: str) -> Figu
 
     whole: what the shares are of.
     """
-    rows = 0.2 * len(shares)
+    rows = 0.2 * row_count(shares)
     if not shown.leaves_out:
         height = rows + 0.75
         figure = Figure(figsize=(9.2, height))

@@ -1,7 +1,7 @@
 """Shares of outcomes as bars, and numbers of the landers at rest as distributions."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from textwrap import fill
 
 import numpy as np
@@ -17,8 +17,8 @@ from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import at_level, percent, with_interval
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 
-# Letters of a line below the axis: it is narrow, and stands at the edge of some figures.
-LONGEST = 56
+# Letters of a line below the axis: it is narrow, and stands at the edge of some figures; of one beside a bar.
+LONGEST, LONGEST_NAME = 56, 26
 # With a largest value of so many medians an axis is one of equal factors.
 LONG_TAIL = 30.0
 # More whole numbers than these are counted in classes.
@@ -46,12 +46,38 @@ class ShareBar:
         return with_interval(self.share, self.digits)
 
 
+def folded(bars: list[ShareBar]) -> list[ShareBar]:
+    """The bars with those that are empty and have one and the same figure as one, at the end."""
+    empty: dict[str, list[ShareBar]] = {}
+    for one in bars:
+        if one.share.value == 0.0:
+            empty.setdefault(one.words, []).append(one)
+    several = [one for one in empty.values() if len(one) > 1]
+    gone = {id(bar) for one in several for bar in one}
+    lines = [fill(f"each of {', '.join(bar.name for bar in one)}", LONGEST_NAME) for one in several]
+    return [
+        *(bar for bar in bars if id(bar) not in gone),
+        *(replace(one[0], name=line) for one, line in zip(several, lines, strict=True)),
+    ]
+
+
+def row_count(bars: list[ShareBar]) -> float:
+    """How many rows of one line the bars take."""
+    return float(_heights(bars).sum())
+
+
+def _heights(bars: list[ShareBar]) -> Array:
+    """The height of each bar's row, in rows of one line."""
+    return np.array([1.0 + 0.75 * bar.name.count("\n") for bar in bars])
+
+
 def draw_shares(axes: Axes, bars: list[ShareBar], whole: str) -> None:
     """One bar an outcome, the interval of a share that has one, and in the margin to the right its figure in per cent.
 
     whole: what they are shares of, "all samples".
     """
-    place = np.arange(len(bars))[::-1]
+    heights = _heights(bars)
+    place = heights.sum() - np.cumsum(heights) + 0.5 * heights - 0.5
     words = f"share of {whole} [%]"
     for y, bar in zip(place, bars, strict=True):
         share = bar.share
@@ -64,6 +90,7 @@ def draw_shares(axes: Axes, bars: list[ShareBar], whole: str) -> None:
             words = f"share of {whole} [%], with {at_level(share.level)}"
         axes.text(1.025, y, bar.words, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
     axes.set_yticks(place, [bar.name for bar in bars])
+    axes.set_ylim(-0.5, heights.sum() - 0.5)
     axes.set_xlim(0, 100)
     axes.set_xticks(range(0, 101, 20))
     axes.set_xlabel(fill(words, LONGEST))

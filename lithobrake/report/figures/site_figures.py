@@ -27,6 +27,8 @@ GOOD, BAD, GROUND, SUNLIGHT = "viridis", "magma_r", "cividis", "cividis"
 LEAST_CONTRAST = 0.01
 # In inches: a map with its title, its colour bar, what stands between them, and the margins.
 WIDE, HIGH, GAP, FOOT = 4.55, 2.1, 0.12, 0.5
+# Of the map beside the answer, which the page shows at this width; letters of degrees [points].
+ALONE, DEGREES = 4.6, 8.0
 
 
 @dataclass(frozen=True)
@@ -100,6 +102,15 @@ def _light(name: str) -> Callable[[SiteCell], float]:
     return lambda site: 100.0 * site.light[name].mean
 
 
+def rest_figure(site_map: SiteMap) -> Figure:
+    """Draw the fraction at rest alone, for the narrow place beside the answer."""
+    width, height = ALONE + 0.1, HIGH * ALONE / WIDE + FOOT
+    figure = Figure(figsize=(width, height))
+    _put(figure, site_map, sheets(site_map)[0], (0.1, FOOT), ALONE)
+    _legend(figure, site_map, 0.1 / height)
+    return figure
+
+
 def sites_figure(site_map: SiteMap) -> Figure:
     """Draw every number of a map of sites over the whole body, in Hammer's equal-area projection.
 
@@ -107,20 +118,25 @@ def sites_figure(site_map: SiteMap) -> Figure:
     """
     drawn, _ = drawn_and_flat(site_map)
     rows = -(-len(drawn) // COLUMNS)
-    width, height = COLUMNS * WIDE + 0.1, rows * (HIGH + GAP) + FOOT
-    figure = Figure(figsize=(width, height))
-    polygons = [hammer(*_border(*site.bounds_deg)) for site in site_map.cells]
+    height = rows * (HIGH + GAP) + FOOT
+    figure = Figure(figsize=(COLUMNS * WIDE + 0.1, height))
     for number, sheet in enumerate(drawn):
         row, column = divmod(number, COLUMNS)
-        left, bottom = 0.1 + column * WIDE, height - (row + 1) * (HIGH + GAP) + GAP
-        axes = figure.add_axes((left / width, bottom / height, (WIDE - 0.65) / width, (HIGH - 0.28) / height))
-        colours = _draw(axes, site_map, sheet, polygons)
-        bar = figure.add_axes(((left + WIDE - 0.6) / width, (bottom + 0.3) / height, 0.1 / width, 1.35 / height))
-        scale: Any = figure.colorbar(colours, cax=bar)
-        scale.outline.set_visible(False)
-        bar.tick_params(labelsize=8.0, length=2.0)
+        _put(figure, site_map, sheet, (0.1 + column * WIDE, height - (row + 1) * (HIGH + GAP) + GAP), WIDE)
     _legend(figure, site_map, 0.1 / height)
     return figure
+
+
+def _put(figure: Figure, site_map: SiteMap, sheet: SiteSheet, corner: tuple[float, float], wide: float) -> None:
+    """A map and its colour bar, from a corner (left, bottom) on and so wide, all in inches."""
+    (width, height), (left, bottom), high = figure.get_size_inches(), corner, HIGH * wide / WIDE
+    polygons = [hammer(*_border(*site.bounds_deg)) for site in site_map.cells]
+    axes = figure.add_axes((left / width, bottom / height, (wide - 0.65) / width, (high - 0.28) / height))
+    colours = _draw(axes, site_map, sheet, polygons)
+    bar = figure.add_axes(((left + wide - 0.6) / width, (bottom + 0.3) / height, 0.1 / width, (high - 0.75) / height))
+    scale: Any = figure.colorbar(colours, cax=bar)
+    scale.outline.set_visible(False)
+    bar.tick_params(length=2.0)
 
 
 def hammer(latitude_deg: Array, longitude_deg: Array) -> Array:
@@ -176,18 +192,18 @@ def _graticule(axes: Axes) -> None:
         words = degrees(latitude, "N", "S")
         # Beside the edge, which runs away from the equator to the right.
         off = (-3.0, 0.06 * latitude)
-        axes.annotate(words, (x, y), off, textcoords="offset points", ha="right", va="center", fontsize=6.0)
+        axes.annotate(words, (x, y), off, textcoords="offset points", ha="right", va="center", fontsize=DEGREES)
     for longitude in range(-120, 121, 60):
         line = hammer(0.5 * turn, np.full(181, longitude))
         axes.plot(*line.T, color=RULE, linewidth=0.4, alpha=0.8, zorder=3)
         words = degrees(longitude, "E", "W")
         axes.annotate(
-            words, tuple(line[90]), (1.5, 1.5), textcoords="offset points", fontsize=6.0, color="white",
+            words, tuple(line[90]), (1.5, 1.5), textcoords="offset points", fontsize=DEGREES, color="white",
             path_effects=_rim(), zorder=5,
         )  # fmt: skip
     edge = [hammer(0.5 * turn[:: 1 if side > 0 else -1], np.full(181, side * 180.0)) for side in (-1.0, 1.0)]
     axes.plot(*np.concatenate([*edge, edge[0][:1]]).T, color=INK, linewidth=0.7, zorder=4)
-    axes.set_xlim(-2.3, 2.02)
+    axes.set_xlim(-2.4, 2.02)
     axes.set_ylim(-1.02, 1.02)
     axes.set_aspect("equal", anchor="W")
     axes.set_axis_off()
@@ -218,7 +234,7 @@ def _legend(figure: Figure, site_map: SiteMap, bottom: float) -> None:
     axes = figure.add_axes((0.02, bottom, 0.96, 0.01))
     axes.set_axis_off()
     words = "Every site has the same area."
-    axes.legend(handles=marks, ncol=2, loc="lower left", title=words, title_fontsize=7.5, alignment="left")
+    axes.legend(handles=marks, ncol=2, loc="lower left", title=words, title_fontsize=8.0, alignment="left")
 
 
 def agreement_figure(regions: Sequence[SiteAgreement], level: float) -> Figure:

@@ -12,7 +12,7 @@ from lithobrake.report.figures.landing_figure import landing_figure
 from lithobrake.report.figures.model_figures import calibration_figure, error_figure
 from lithobrake.report.figures.place_map import PlaceMap, Places, Regions, outcomes_figure
 from lithobrake.report.figures.run_figures import LandingsOfRuns, runs_figure, variance_figure
-from lithobrake.report.figures.share_figures import ShareBar
+from lithobrake.report.figures.share_figures import ShareBar, folded
 from lithobrake.report.live.explorer import explorer_sections
 from lithobrake.report.tables import dispersion_tables as dispersion
 from lithobrake.report.tables import expansion_tables, landing_tables
@@ -132,12 +132,12 @@ def _draw_outcomes(data: PageData) -> "Figure":
 
 
 def outcome_shares(data: PageData) -> list[ShareBar]:
-    """What becomes of the landings after the first touchdown, as bars have it."""
+    """What becomes of the landings after the first touchdown, as bars have it; what none met is one bar."""
     known, limit = dispersion.outcomes_known(data), time_limit(data.study["flight"]["duration"])
     words = {key: SHORT_OUTCOME_WORDS.get(key, long) for key, long in dispersion.parts(data).items()}
-    return [
+    return folded([
         share_bar(known[key], short.format(limit=limit), FATE_COLOURS[key], data.digits) for key, short in words.items()
-    ]
+    ])  # fmt: skip
 
 
 def share_bar(entry: CountedShare, words: str, colour: str, digits: int) -> ShareBar:

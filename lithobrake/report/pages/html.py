@@ -8,7 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 from urllib.parse import quote
 
-from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, in_html
+from lithobrake.report.content import Content, LiveSection, PageSection, PageTable, Panel, Strip, StripColumn, in_html
 from lithobrake.statements.answers import Tile
 from lithobrake.vocabulary.file_names import CONTENTS
 from lithobrake.vocabulary.outcomes import OUTCOME_COLOURS
@@ -85,15 +85,14 @@ def _numbered(content: Content, panels: Mapping[str, Panel]) -> list[str]:
 def _first_screen(kind: str, title: str, facts: str, content: Content, figures: Mapping[str, str]) -> str:
     """The answer, the numbers, and the figure beside them."""
     tiles = "".join(_tile(tile) for tile in content.tiles)
+    tiles = f'<ul class="tiles">\n{tiles}</ul>\n' if tiles else ""
     beside = "" if content.first is None else figures.get(content.first.name, "")
     return f"""<header id="answer">
 <p class="kind">{escape(kind)}</p>
 <h1>{escape(title)}</h1>
 <p class="answer">{_unbroken(content.answer)}</p>
 <div class="{"first" if beside else "first alone"}">
-<div><ul class="tiles">
-{tiles}</ul>
-{_warnings(content.warnings)}</div>
+<div>{_strip(content.strip)}{tiles}{_warnings(content.warnings)}</div>
 {beside}<div class="facts"><p>{_unbroken(facts)}</p>
 {HINT if figures else ""}</div></div>
 </header>"""
@@ -145,6 +144,38 @@ def _tile(tile: Tile) -> str:
     style = f' style="border-color: {colour}"' if colour else ""
     value = f"<b>{escape(tile.value)} <small>{escape(tile.unit)}</small></b>"
     return f"<li{style}>{value}<span>{_unbroken(tile.words)}</span></li>\n"
+
+
+def _strip(strip: Strip | None) -> str:
+    """Answers side by side as a table, each with its mark and its bar; nothing without any."""
+    if strip is None:
+        return ""
+    head = "".join(f'<th scope="col">{in_html(one.words)}</th>' for one in strip.columns)
+    rows = "".join(
+        f'<tr><th scope="row">{escape(name)} <small>{_unbroken(words)}</small></th>'
+        + "".join(_strip_cell(one, place) for one in strip.columns)
+        + "</tr>\n"
+        for place, (name, words) in enumerate(strip.rows)
+    )
+    ends = "".join(f"<td><span>0</span><span>{one.end:g}</span></td>" for one in strip.columns)
+    return f"""<table class="strip"><caption>{escape(strip.title)}</caption><thead><tr><td></td>{head}</tr></thead>
+<tbody>
+{rows}</tbody><tfoot aria-hidden="true"><tr><td></td>{ends}</tr></tfoot></table>
+<p class="note">{_unbroken(strip.note)}</p>
+"""
+
+
+def _strip_cell(column: StripColumn, row: int) -> str:
+    """An estimate in words, and below them on the scale of its column."""
+    found = column.found[row]
+    if found is None or not found.is_known:
+        return f"<td>{in_html(column.shown[row])}</td>"
+    ends = [100.0 * min(max(one / column.end, 0.0), 1.0) for one in (found.bounds or (found.value, found.value))]
+    value, mark = column.shown[row].partition(" ("), 100.0 * min(found.value / column.end, 1.0)
+    words = f"<b>{in_html(value[0])}</b>{in_html(value[1] + value[2])}"
+    bar = f'<i style="left:{ends[0]:.3g}%;width:{ends[1] - ends[0]:.3g}%"></i>'
+    bar += f'<i class="mark" style="left:{mark:.3g}%"></i>'
+    return f'<td>{words}<span class="scale" aria-hidden="true">{bar}</span></td>'
 
 
 def _panel(number: int | None, panel: Panel) -> str:

@@ -50,7 +50,7 @@ addEventListener("keydown", (event) => {
   for (const box of document.querySelectorAll(".picture input:checked")) box.checked = false;
 });
 
-for (const heading of typeof document === "undefined" ? [] : document.querySelectorAll("thead th")) {
+for (const heading of typeof document === "undefined" ? [] : document.querySelectorAll(".scroll thead th")) {
   const button = document.createElement("button");
   button.append(...heading.childNodes);
   heading.append(button);

@@ -21,7 +21,14 @@ from lithobrake.report.figures.place_map import (
     whole_figure,
 )
 from lithobrake.report.figures.run_figures import variance_figure
-from lithobrake.report.figures.share_figures import RestSpread, ShareBar, attitude_figure, counts_figure, spreads_figure
+from lithobrake.report.figures.share_figures import (
+    RestSpread,
+    ShareBar,
+    attitude_figure,
+    counts_figure,
+    folded,
+    spreads_figure,
+)
 from lithobrake.report.live.body_view import body_views
 from lithobrake.report.live.explorer import touchdown_sections
 from lithobrake.report.live.landing_view import landing_views
@@ -35,6 +42,7 @@ from lithobrake.report.pages.first_touchdown import (
 )
 from lithobrake.report.tables import dispersion_tables as dispersion
 from lithobrake.report.tables import journey_tables
+from lithobrake.report.tables.ground_strip import ground_strip
 from lithobrake.report.tables.limit_state_tables import limit_state_tables
 from lithobrake.results.page_data import PageData, PageJourneys
 from lithobrake.statements import captions, grounds
@@ -62,7 +70,12 @@ def study_content(data: PageData) -> Content:
     else:
         sections = _joined(first, asked)
     return Content(
-        page_answer(data), page_warnings(data), page_tiles(data), _first_plot(data), [*sections, _appendix(data)]
+        page_answer(data),
+        page_warnings(data),
+        page_tiles(data),
+        _first_plot(data),
+        [*sections, _appendix(data)],
+        ground_strip(data),
     )
 
 
@@ -191,9 +204,9 @@ def _draw_partner(data: PageData, journeys: PageJourneys) -> "Figure":
 
 
 def end_shares(data: PageData) -> list[ShareBar]:
-    """How the journeys end, as bars have it."""
+    """How the journeys end, as bars have it; ends that no lander met are one bar."""
     names = end_words(data.results.site)
-    return [ShareBar(names[name], one.share, END_COLOURS[name]) for name, one in data.results.ends.items()]
+    return folded([ShareBar(names[name], one.share, END_COLOURS[name]) for name, one in data.results.ends.items()])
 
 
 def _draw_ends(data: PageData) -> "Figure":

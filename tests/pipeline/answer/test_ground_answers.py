@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from lithobrake.analysis.ground_spread import median_over_grounds, share_over_grounds
+from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
-from lithobrake.pipeline.answer.ground_answers import over_grounds
+from lithobrake.pipeline.answer.ground_answers import finer_ground, over_grounds
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 
 from ..design.test_bed_grounds import gravel, study
@@ -57,3 +58,31 @@ def test_the_interval_is_that_of_one_body_by_the_bed_of_the_first_touchdown(unkn
 
 def test_a_body_of_patches_is_every_body() -> None:
     assert over_grounds(asked("patchy"), ends()) is None
+
+
+def test_the_finest_beds_have_an_answer_of_their_own() -> None:
+    """Every third bed is of the finest grains, which stand for half of four octaves of half of the ground."""
+    fine = {"weight": 0.5, "grain_size": {"distribution": "log_uniform", "lower": 0.01, "upper": 0.16}}
+    kinds, table = {"fine": fine, "coarse": gravel(0.3, 0.5)}, ends()
+    each = [SimpleNamespace(kind="fine", size=0.04 if bed % 3 == 0 else 0.1) for bed in range(BEDS)]
+    found = finer_ground(  # type: ignore[arg-type]
+        SimpleNamespace(study=study(kinds, finest=0.04), grounds=SimpleNamespace(each=each)), table
+    )
+    assert found is not None
+    assert (found.finest_m, found.share) == (0.04, pytest.approx(0.25))
+    own = table.bed % 3 == 0
+    rests = table.rests[own]
+    assert found.journeys == own.sum() == 32
+    assert found.at_rest is not None
+    # Two of these four beds let half of their landers go.
+    assert (found.at_rest.count, found.at_rest.share.value) == (24, 0.75)
+    times, beds = table.numbers["time_s"][own][rests], table.bed[own][rests]
+    assert found.time_s == quantile_estimate(times, beds, 0.5)
+    assert found.time_s.value == pytest.approx(np.median(times))
+    assert finer_ground(SimpleNamespace(study=study({"coarse": gravel(0.3)})), table) is None  # type: ignore[arg-type]
+    elsewhere = table.taken(np.flatnonzero(~own))
+    alone = finer_ground(  # type: ignore[arg-type]
+        SimpleNamespace(study=study(kinds, finest=0.04), grounds=SimpleNamespace(each=each)), elsewhere
+    )
+    assert alone is not None
+    assert (alone.journeys, alone.at_rest, alone.time_s) == (0, None, None)

@@ -37,7 +37,7 @@ from lithobrake.report.figures.site_figures import drawn_and_flat
 from lithobrake.results import StudyResults
 from lithobrake.results.site_results import SiteMap
 from lithobrake.results.study_files import json_values, results_in
-from lithobrake.statements.sites import everywhere
+from lithobrake.statements.sites import compared, everywhere, page_answer
 from lithobrake.study.source import StudySource
 from lithobrake.vocabulary.number_words import LEVEL
 
@@ -221,8 +221,14 @@ def test_a_map_is_written_as_page_numbers_table_and_polygons(site_map: SiteMap, 
     assert (page, numbers, table) == site_map_files(tmp_path / "sites")
     assert results_in(SiteMap, json.loads(numbers.read_text(encoding="utf-8"))) == site_map
     text = page.read_text(encoding="utf-8")
-    assert text.count("<figure") == 2
-    assert "cannot be distinguished from the best" in text
+    assert text.count("<figure") == 3
+    header, below = text.split("</header>")
+    # The line at the top, then the comparison with landings where it is drawn: no number twice on one screen.
+    assert site_map.statement == f"{page_answer(site_map)} {compared(site_map)}"
+    assert page_answer(site_map).replace(" %", "&nbsp;%").replace(" h ", "&nbsp;h ") in header
+    assert "by the emulator" not in header
+    assert compared(site_map).replace(" %", "&nbsp;%") in below
+    assert header.count(f"{site_map.landers} landers") == 1
     with table.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == CELLS

@@ -1,6 +1,7 @@
 """Journeys where the ground is unknown: which bed a lander meets, and what the answer says of it."""
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from lithobrake.pipeline.inferred_study import InferredStudy
 from lithobrake.report.plotted_study import PlottedStudy
 from lithobrake.results import StudyResults
 from lithobrake.study import check_tables, load_tables
+from lithobrake.vocabulary.number_words import with_interval
 from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE
 
 QUICK = Path(__file__).parents[3] / "scenarios" / "quick.toml"
@@ -98,6 +100,16 @@ def test_the_page_shows_the_answer_against_the_size_of_the_grains(found: StudyRe
     assert "The answer against the size of the grains" in page
     assert "By kind of ground" in page
     assert "one of these, unknown which" in page
+    # Side by side at the top, the finest beds among them, and in no boxes there.
+    header, finer = page[: page.index("</header>")], found.results.finer_ground
+    assert re.findall(r'<th scope="row">([\w ]+) <small>', header) == ["gravel", "rock", "finest", "one of these"]
+    assert 'class="tiles"' not in header
+    assert finer is not None
+    curve = found.results.ground_curve
+    assert curve is not None
+    assert finer.journeys == sum(bed.journeys for bed in curve.beds if bed.grain_size_m == finer.finest_m) > 0
+    assert finer.at_rest is not None
+    assert f"<b>{with_interval(finer.at_rest.share).split(' %')[0]}</b>" in header
 
 
 def test_the_figure_of_the_grounds_is_drawn_by_its_name(found: PlottedStudy) -> None:

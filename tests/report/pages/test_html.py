@@ -11,6 +11,8 @@ from lithobrake.report.content import (
     PageTable,
     Panel,
     Plot,
+    Strip,
+    StripColumn,
     Tile,
     flat,
     in_html,
@@ -20,6 +22,7 @@ from lithobrake.report.content import (
 )
 from lithobrake.report.pages.html import LONG, page
 from lithobrake.statements.labels import area
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import number
 from lithobrake.vocabulary.outcomes import FATE_COLOURS
 
@@ -168,3 +171,20 @@ def test_names_that_are_alike_share_one_scale() -> None:
 def test_powers_of_units_are_raised_and_nothing_else_is() -> None:
     assert raised_units("1419 m2, 6 × 10⁻⁷ m2/s2, 2294 kg/m3 [m/s2]") == "1419 m², 6 × 10⁻⁷ m²/s², 2294 kg/m³ [m/s²]"
     assert raised_units("runs/s2, Q2 and m2") == "runs/s2, Q2 and m2"
+
+
+def test_answers_on_each_ground_stand_on_one_scale_by_their_values() -> None:
+    """Of a scale to 40: 10 (5 to 20) begins at 12.5 % and is 37.5 % wide; without bounds there is a mark alone."""
+    found = [Estimate(10.0, 5.0, 20.0), Estimate(30.0, None, None), None]
+    column = StripColumn("median time [min]", found, ["10 (5-20)", "30", "none"], 40.0)
+    strip = Strip("By <kind>", [("gravel", "55 %"), ("rock", ""), ("ice", "")], [column], "Bars: intervals.")
+    text = page("Study", "", Content("Answer.", [], [], None, [], strip), {})
+    header = text[: text.index("</header>")]
+    assert "By &lt;kind&gt;" in header
+    rows = re.findall(r"<tr><th scope=\"row\">.*?</tr>", header)
+    assert [re.findall(r"left:([\d.]+)%", row) for row in rows] == [["12.5", "25"], ["75", "75"], []]
+    assert [re.findall(r"width:([\d.]+)%", row) for row in rows] == [["37.5"], ["0"], []]
+    assert "<b>10</b> (5-20)" in rows[0]
+    assert "<span>0</span><span>40</span>" in header
+    # No box for numbers that are not there.
+    assert 'class="tiles"' not in header

@@ -12,7 +12,9 @@ import pytest
 from lithobrake.report.content import Content, PageTable
 from lithobrake.report.live.body_view import body_views
 from lithobrake.report.pages.study_page import study_content
+from lithobrake.report.tables.ground_strip import scale_end
 from lithobrake.results import Table
+from lithobrake.results.ground_results import FinerGround, GroundKindResults, OverGrounds
 from lithobrake.results.page_data import PageData
 from lithobrake.results.run_results import CountedShare
 from lithobrake.statements import journeys as words
@@ -51,6 +53,53 @@ def test_the_page_begins_with_the_share_at_rest_and_four_others(asked: PageData,
     header = asked_page[: asked_page.index("</header>")]
     assert header.index('class="answer"') < header.index('class="tiles"') < header.index('id="figure-1"')
     assert re.findall(r"<h2>([^<]+)</h2>", asked_page) == SECTIONS
+
+
+def on_grounds(data: PageData) -> PageData:
+    """The same study as if it had two kinds of ground, and finer ground than any that is simulated."""
+
+    def kind(weight: float, count: int, time_s: Estimate) -> GroundKindResults:
+        share = CountedShare(count, Estimate(1.0, 0.8, 1.0))
+        return GroundKindResults(weight, 12, count, (0.1, 0.2), share, time_s, Estimate(11.0, 7.0, 13.0), {})
+
+    finest = FinerGround(0.1, 0.35, 20, CountedShare(20, Estimate(1.0, 0.7, 1.0)), Estimate(400.0, 300.0, 500.0),
+                         Estimate(9.0, 6.0, 12.0))  # fmt: skip
+    over = OverGrounds(Estimate(0.9, 0.62, 1.0), Estimate(900.0, 500.0, 1700.0), Estimate(12.0, 5.0, 31.0), {})
+    kinds = {
+        "gravel": kind(0.6, 28, Estimate(700.0, 600.0, 800.0)),
+        "rock": kind(0.4, 20, Estimate(1500.0, None, None)),
+    }
+    return replace(data, results=replace(data.results, grounds=kinds, finer_ground=finest, over_grounds=over))
+
+
+def test_on_unknown_ground_the_page_begins_with_the_answer_on_each_kind(asked: PageData) -> None:
+    content = study_content(on_grounds(asked))
+    assert content.answer.startswith("90 % (90 % interval 62-100 %)")
+    strip = content.strip
+    assert strip is not None
+    assert [name for name, _ in strip.rows] == ["gravel", "rock", "finest", "one of these"]
+    rests, times, distances = strip.columns
+    assert rests.shown == ["100 (80-100)", "100 (80-100)", "100 (70-100)", ""]
+    over = rests.found[3]
+    assert over is not None
+    assert (over.value, *(over.bounds or ())) == pytest.approx((90.0, 62.0, 100.0))
+    size, unit = words.time_unit(asked.journeys.rest)
+    assert unit in times.words
+    assert [one.value for one in times.found if one] == pytest.approx(
+        [700.0 / size, 1500.0 / size, 400.0 / size, 900.0 / size]
+    )
+    assert times.end >= 1700.0 / size
+    assert (distances.shown[0], distances.end) == ("11 (7-13)", 40.0)
+    # What the strip has stands in no box beside it, nor in the caption of the map.
+    assert not any("median" in tile.words for tile in content.tiles)
+    assert content.first is not None
+    assert not re.search(r"\d", content.first.sentence)
+    assert study_content(asked).strip is None
+
+
+@pytest.mark.parametrize(("most", "end"), [(39.7, 40.0), (100.0, 100.0), (0.23, 0.3), (7.0, 7.0), (0.0, 1.0)])
+def test_a_scale_ends_at_one_digit_and_zeros(most: float, end: float) -> None:
+    assert scale_end(most) == pytest.approx(end)
 
 
 def test_no_figure_or_part_of_the_page_hides_another(asked: PageData, asked_page: str, asked_folder: Path) -> None:
