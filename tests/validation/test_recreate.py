@@ -1,5 +1,6 @@
 """Studies that are made again, bands of the validation, and its descents."""
 
+import csv
 import json
 import runpy
 import subprocess
@@ -13,6 +14,8 @@ from lithobrake.smallbody import fly
 
 ROOT = Path(__file__).parents[2]
 RUNNER = runpy.run_path(str(ROOT / "validation" / "recreate.py"))
+with (ROOT / "validation" / "quantities.csv").open(newline="", encoding="utf-8") as file:
+    QUANTITIES = list(csv.DictReader(file))
 SCRIPT = """
 import csv, json, sys
 from pathlib import Path
@@ -89,9 +92,60 @@ def test_what_cannot_be_made_anew_is_refused_in_a_sentence(root: Path) -> None:
         RUNNER["recreate"](known["squares"], [3], root / "work")
 
 
+def test_files_of_others_are_asked_for_and_handed_on(root: Path) -> None:
+    folder = root / "validation"
+    (folder / "lengths.py").write_text(
+        "import sys\nfrom pathlib import Path\n"
+        "words = (Path(sys.argv[2]) / 'words.txt').read_text().split()\n"
+        "rows = ''.join(f'{word},{len(word)}\\n' for word in words)\n"
+        "Path(__file__).with_suffix('.csv').write_text(f'word,length\\n{rows}')\n"
+    )
+    (folder / "lengths.csv").write_text("word,length\nstone,5\nrock,4\n")
+    (folder / "lengths.json").write_text(json.dumps({"command": "python validation/lengths.py --meshes FOLDER"}))
+    (root / "others").mkdir()
+    (root / "others" / "words.txt").write_text("stone rock")
+    case = RUNNER["cases"](root)["lengths"]
+    with pytest.raises(ValueError, match="name their folder with --given"):
+        RUNNER["recreate"](case, None, root / "work")
+    assert RUNNER["recreate"](case, None, root / "work", given=root / "others") == 0.0
+
+
+def test_a_study_of_the_showcase_is_run_by_its_own_command(root: Path) -> None:
+    (root / "showcase" / "tiny").mkdir(parents=True)
+    landings = {"command": "lithobrake run scenarios/tiny.toml", "cpu_s": 7.0}
+    origin = {"command": "lithobrake run showcase/tiny/study.toml --out FOLDER", "cpu_s": 1.0, "landings": landings}
+    (root / "showcase" / "tiny" / "origin.json").write_text(json.dumps(origin))
+    case = RUNNER["cases"](root)["tiny"]
+    assert (case.command, case.cpu_s, case.why_not) == (landings["command"], 7.0, None)
+    with pytest.raises(ValueError, match="exit code"):  # lithobrake itself finds no scenarios/tiny.toml
+        RUNNER["recreate"](case, None, root / "work")
+
+
+def test_every_quantity_rests_on_a_case_that_one_command_makes_again() -> None:
+    known = RUNNER["cases"]()
+    made_by = {row["made_by"] for row in QUANTITIES}
+    assert len(made_by) > 10
+    assert {name: known[name].why_not for name in made_by if known[name].why_not} == {}
+
+
+def test_the_table_of_quantities_is_what_the_page_counts() -> None:
+    page = (ROOT / "docs" / "validation" / "index.md").read_text(encoding="utf-8")
+    agree = sum(row["agrees"] == "yes" for row in QUANTITIES)
+    assert f"{agree} of {len(QUANTITIES)} quantities agree" in page
+    assert len(QUANTITIES) >= 50
+    assert agree >= 30
+    assert {row["kind"] for row in QUANTITIES} == {"experiment", "flight", "code"}
+    assert [row for row in QUANTITIES if (row["agrees"] == "yes") == bool(row["cause"])] == []
+    unknown = [row["quantity"] for row in QUANTITIES if row["cause"] == "not shown"]
+    words = " ".join(page.partition("## Cause unknown")[2].partition("\n## ")[0].split())
+    assert [one for one in unknown if one not in words] == []
+    names = [(row["page"], row["quantity"]) for row in QUANTITIES]
+    assert len(set(names)) == len(names), "a quantity stands there twice"
+
+
 def test_every_case_of_the_repository_has_its_script() -> None:
     known = RUNNER["cases"]()
-    scripts = {case.command.split()[1] for case in known.values()}
+    scripts = {case.command.split()[1] for case in known.values() if case.command.startswith("python ")}
     assert scripts
     assert [script for script in sorted(scripts) if not (ROOT / script).exists()] == []
 

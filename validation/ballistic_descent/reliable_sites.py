@@ -32,6 +32,7 @@ from lithobrake.smallbody import Body
 TABLE = "reliable_sites.csv"
 RESTITUTIONS = (0.5, 0.6, 0.7, 0.8, 0.9)
 PLACES = ("anywhere", "outside")  # of the release: nearer to the barycentre than the moon, too, or not
+FOLLOWED = ("outside", 0.7)  # of which landers are followed to rest
 KINDS = {"release": str, "ground": str}
 UNKNOWN = "unknown ground"
 FASTEST = 0.073  # m/s; no touchdown of scenarios/quick.toml is faster than 7 cm/s
@@ -108,13 +109,13 @@ def chances(body: Body, up: Floats, descents: Descents) -> Floats:
 def hard_rows(body: Body, release: str, restitution: float, distances: tuple[float, ...]) -> list[Row]:
     """Rows of hard ground: lands as fast as the first bounce allows, if that must not lead past L2.
 
-    Landers are followed to rest, with their errors, after releases outside alone.
+    Landers are followed to rest, with their errors, for FOLLOWED alone.
     """
     speed, rows = closing_speeds(body) / restitution, []
     every = back_in_time(body, directions(), speed, distances, release == "outside")
     for distance, descents in every.items():
         chance, rested = chances(body, directions(), descents), np.full(len(speed), np.nan)
-        if release == "outside":
+        if (release, restitution) == FOLLOWED:
             rested = shares(body, descents, hard_ground(restitution))[1]
         for number, place in enumerate(LONGITUDES):
             rows.append({

@@ -51,7 +51,7 @@ def message_lines(rows: list[Row]) -> list[tuple[Quantity, tuple[str, ...]]]:
             read = sum(row["states"] > 0 for row in own)
             if own:
                 asked = 0 if verdict == "invalid" else len(own)
-                one = Quantity(CODE, f"{len(own)} messages, {verdict}, {form}: read", str(asked), str(read), "", "0",
+                one = Quantity(CODE, f"{len(own)} messages, {verdict}, {form}: read", str(asked), str(read), "", "all",
                                read == asked, "oem_samples", CAUSES.get((verdict, form), NOT_SHOWN))  # fmt: skip
                 lines.append((one, (verdict, form, str(len(own)), str(read), str(len(own) - read), yes(one.agrees))))
     return lines

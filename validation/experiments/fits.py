@@ -144,5 +144,5 @@ def line(
     """Return a row of the table: it agrees where our value is within a bar of the measured one."""
     ratio = f"{ours.value / measured:.2f}" if measured else "-"
     agrees = abs(ours.value - measured) <= bar
-    tolerance = f"{bar / measured:.0%}" if bar == SHARE * measured else f"{bar:g}"
+    tolerance = f"{100.0 * bar / measured:.0f} %" if bar == SHARE * measured else f"{bar:g}"
     return Line(quantity, text or f"{measured:.3g}", said(ours), ours.rows, ratio, agrees, cause, tolerance)

@@ -37,6 +37,7 @@ BETTER_READINGS = {
     "prefactor, depth below the mean surface",
     "rebound speed / impact speed, mean of the grains that leave the bed",
     "speed 6 s after contact, packing fraction 0.58, no cohesion [m/s]",
+    "below 1e-4 g, 1-10 cm/s, 4 mm grains as cohesive as lunar soil",
 }
 # Sections by their keys in the text: name in the summary, and the table of simulations behind them.
 SECTIONS = {

@@ -118,31 +118,24 @@ def pair_table() -> str:
 
 
 def impact_quantities(found: dict[str, Curve]) -> list[Quantity]:
-    """Heights at the times set before the runs, those in free fall as one, and in the bed.
+    """Heights in the bed, and at the times set before the runs at which the ball does not fall freely.
 
     Where they differ, the cause is shown if a shift of the impact point by a billionth of a metre moves the ball by
     more than the criterion.
     """
-    fall, *later = [[time for time in ASKED if time < MEETS], *([time] for time in ASKED if time > MEETS)]
     gaps: list[tuple[str, float, str]] = [
-        (f"in free fall ({' and '.join(f'{1000.0 * time:g}' for time in fall)} ms)", gap_at(found, fall), NOT_SHOWN),
         (f"in the bed, {1000.0 * MEETS:g} to {1000.0 * BOTTOM:g} ms, largest", largest_gap(found), NOT_SHOWN),
     ]
-    for times in later:
-        shift = moved(found, "nudged", times[0])
+    for time in (time for time in ASKED if time > MEETS):
+        shift, ours, theirs = moved(found, "nudged", time), *(height(found[name], time) for name in (OURS, "mercury"))
+        gap = math.inf if ours is None or theirs is None else abs(ours - theirs)
         cause = f"an impact point moved by 1e-9 m changes it by {mm(shift)} mm" if shift else NOT_SHOWN
-        words = f"at {1000.0 * times[0]:g} ms, after the turn"
-        gaps.append((words, gap_at(found, times), cause if shift and shift > CRITERION else NOT_SHOWN))
+        words = f"at {1000.0 * time:g} ms, after the turn"
+        gaps.append((words, gap, cause if shift and shift > CRITERION else NOT_SHOWN))
     return [
         Quantity(CODE, f"height of the ball, difference from MercuryDPM {words} [mm]", "0", mm(gap), "",
                  mm(CRITERION, 0), gap <= CRITERION, "impact", cause) for words, gap, cause in gaps
     ]  # fmt: skip
-
-
-def gap_at(found: dict[str, Curve], times: list[float]) -> float:
-    """The largest difference of height from MercuryDPM at some times, infinite where one is not known [m]."""
-    pairs = [(height(found[OURS], time), height(found["mercury"], time)) for time in times]
-    return max(math.inf if one is None or other is None else abs(one - other) for one, other in pairs)
 
 
 def pair_quantities() -> list[Quantity]:

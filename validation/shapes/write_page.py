@@ -71,7 +71,7 @@ def quantities() -> list[Quantity]:
         own = {row["mesh"]: row for row in slopes() if (row["body"], row["density"]) == (one.body, one.density)}
         value = own["public"][one.measure]
         held = agrees(value, one)
-        cells = (one.words, f"{one.value:g}", f"{value:.4g}", f"{value / one.value:.3f}", f"{WITHIN:.0%}")
+        cells = (one.words, f"{one.value:g}", f"{value:.4g}", f"{value / one.value:.3f}", f"{100.0 * WITHIN:.0f} %")
         lines.append(Quantity(CODE, *cells, held, "slopes", NOT_SHOWN if held else cause_of(one, own)))
     every = read_rows(HERE / "slopes_facets.csv", {"body": str, "mesh": str})
     worst = min(row["correlation"] for row in every)
