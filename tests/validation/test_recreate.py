@@ -6,6 +6,7 @@ import runpy
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -189,6 +190,56 @@ def test_no_and_every_longitude_have_words_and_agree_with_nothing() -> None:
 
 
 DESCENTS = runpy.run_path(str(Path(__file__).parents[2] / "validation" / "ballistic_descent" / "descents.py"))
+
+
+@pytest.fixture
+def sites(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """What validation/ballistic_descent/reliable_sites.py defines."""
+    for folder in ("benchmarks", "validation/ballistic_descent"):
+        monkeypatch.syspath_prepend(str(ROOT / folder))
+    return runpy.run_path(str(ROOT / "validation" / "ballistic_descent" / "reliable_sites.py"))
+
+
+def test_only_what_leaves_the_far_side_faster_than_the_closing_speed_passes_l2(sites: dict[str, Any]) -> None:
+    """L2 is where Hill's radius has it to its first order; against the flight of the package."""
+    body = DESCENTS["balls"]()
+    l2 = sites["lagrange_point"](body, -1.0)
+    share = DESCENTS["primary_share"](body)
+    hill = body.orbit.distance * ((1.0 - share) / 3.0) ** (1.0 / 3.0)
+    assert -l2 == pytest.approx(hill * (1.0 + hill / body.orbit.distance / 3.0), rel=0.02)
+    speed, far = sites["closing_speeds"](body)[18], np.array([-1.0, 0.0, 0.0])
+    farthest = []
+    for factor in (0.97, 1.15):
+        place, velocity = DESCENTS["radius"](body) * far[None], factor * speed * far[None]
+        reach = 0.0
+        for _ in range(2000):
+            place, velocity = DESCENTS["step"](body, place, velocity, 1.0)
+            if np.linalg.norm(place[0]) < DESCENTS["radius"](body):
+                break
+            reach = max(reach, float(np.linalg.norm(place[0])))
+        farthest.append(reach)
+    assert farthest[0] < -l2 < farthest[1]
+
+
+def test_the_linear_chance_is_the_share_of_flights_that_meet_the_moon(sites: dict[str, Any]) -> None:
+    body, up = DESCENTS["balls"](), sites["directions"]()[18:19]
+    descents = sites["back_in_time"](body, up, np.array([0.073]), (600.0,), True)[600.0]
+    chance = sites["chances"](body, up, descents)[0]
+    errors = np.random.default_rng(5).standard_normal((100, 6)) * ([30.0] * 3 + [0.02 / 3.0] * 3)
+    states = descents.states + errors
+    met = fly(body, states[:, :3], states[:, 3:], 3.0 * 3600.0 + descents.times[0]).status == "impact"
+    assert 0.3 < chance < 0.95
+    assert chance == pytest.approx(np.mean(met), abs=0.12)  # 100 flights
+
+
+def test_no_release_outside_is_nearer_to_the_barycentre_than_the_moon(sites: dict[str, Any]) -> None:
+    body, up = DESCENTS["balls"](), sites["directions"]()
+    descents = sites["back_in_time"](body, up, np.full(len(up), 0.09), (200.0,), True)[200.0]
+    states = descents.states[np.isfinite(descents.times)]
+    orbit = DESCENTS["primary_share"](body) * body.orbit.distance
+    assert len(states) > 10
+    assert (np.hypot(states[:, 0] - orbit, states[:, 1]) > orbit).all()
+    assert (np.linalg.norm(states[:, :3], axis=1) > 200.0).all()
 
 
 def test_a_descent_flown_forward_comes_down_vertically_at_its_site() -> None:

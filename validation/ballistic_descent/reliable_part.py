@@ -81,14 +81,18 @@ def definition_table(rows: list[Row], before: tuple[int, int]) -> str:
     return table(heads, lines)
 
 
+def inside() -> np.ndarray:
+    """Which longitudes lie in the published band."""
+    return np.asarray((LONGITUDES - PUBLISHED.begin) % 360.0 <= PUBLISHED.end - PUBLISHED.begin)
+
+
 def ground_table(rows: list[Row]) -> str:
     """Kinds of ground: shares at rest in the published band and elsewhere, and the band of most landers."""
-    inside = (LONGITUDES - PUBLISHED.begin) % 360.0 <= PUBLISHED.end - PUBLISHED.begin
     lines = []
     for ground in GROUNDS:
         for distance in SOIL_DISTANCES:
             rested = values(rows, "outside", ground, distance, "at_rest")
-            cells = (f"{one:.2f}" for one in (rested[inside].mean(), rested[~inside].mean(), rested.max()))
+            cells = (f"{one:.2f}" for one in (rested[inside()].mean(), rested[~inside()].mean(), rested.max()))
             found = (str(band_of(LONGITUDES, rested, level)) for level in LEVELS)
             lines.append((ground, f"{distance:g}", *cells, *found))
     heads = ("ground", "release [m]", "320 to 20", "others", "highest")
@@ -135,7 +139,13 @@ def reliable_numbers(rows: list[Row], before: tuple[int, int]) -> dict[str, obje
         row["reaches"] - row["at_rest"] for row in rows
         if (row["release"], row["ground"]) == followed and row["reaches"] > 0.0
     ]  # fmt: skip
+    means = np.array([
+        [values(rows, "outside", ground, away, "at_rest")[inside()].mean() for away in SOIL_DISTANCES]
+        for ground in GROUNDS
+    ])  # fmt: skip
     return {
+        "kinds_apart": f"{np.ptp(means, axis=0).max():.2f}",
+        "releases_apart": f"{(means[-1, 0] - means[-1, -1]):.2f}",
         "definitions": definition_table(rows, before), "reliable": reliable_table(rows), "grounds": ground_table(rows),
         "outside": len(outside), "outside_agree": sum(one.agrees(PUBLISHED, BAR) for one in outside),
         "anywhere": len(anywhere), "anywhere_agree": sum(one.agrees(PUBLISHED, BAR) for one in anywhere),

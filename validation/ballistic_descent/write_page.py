@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from ballistic_descent import DISTANCES, HERE, KINDS, LATITUDES, LONGITUDES, MAP_DISTANCE, RESTITUTIONS, SPEEDS, TABLE
 from bands import Band, band_of
-from reliable_part import BAR, LEVELS, PUBLISHED, quantity, reliable_numbers, sites
+from reliable_part import BAR, LEVELS, PUBLISHED, inside, quantity, reliable_numbers, sites
 from reliable_part import draw as draw_sites
 
 from lithobrake.report.figures.style import INK
@@ -80,11 +80,6 @@ def draw(rows: list[Row], to: Path) -> None:
         for axis in axes[:, 0]:
             axis.set_ylabel("fraction at rest on Dimorphos")
         drawn.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=len(DISTANCES))
-
-
-def inside() -> np.ndarray:
-    """Which longitudes lie in the published band."""
-    return np.asarray((LONGITUDES - PUBLISHED.begin) % 360.0 <= PUBLISHED.end - PUBLISHED.begin)
 
 
 def mean_shares(rows: list[Row], ground: str, distance: float) -> list[float]:
