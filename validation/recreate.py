@@ -4,11 +4,13 @@
     python validation/recreate.py NAME [NAME ...]              makes all rows of these cases anew
     python validation/recreate.py NAME --rows 0 5              makes only these rows anew, counted from 0
     python validation/recreate.py NAME --within 0.05           fails if a number differs by more than 5 %
+    python validation/recreate.py NAME --given FOLDER          where it reads files of others, which are in FOLDER
 
 A case is a document beside its table that says by which command it was made. The command runs in a copy of the folders
 validation, benchmarks, scenarios and docs, where the rows that are asked for were taken out of the table; scripts make
 what their table lacks. Nothing of the repository is changed. The copy and the beds that a script pours stay in --work,
-and beds that are there are used. Of a case without a table nothing is compared: its document is made anew.
+and beds that are there are used. Of a case without a table nothing is compared: its document is made anew. The studies
+of showcase are cases too, and run whole. The list says how many quantities of validation/quantities.csv rest on a case.
 
 --note writes what a whole case cost, and how it compared, to recreated.json beside this script; times that a document
 does not keep are taken from there. The same bits come out on the machine that made a row; elsewhere single bounces
@@ -24,17 +26,21 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import ROOT, command_line, origin, read_document, read_rows, write_document, write_rows
+from quantities import kept_quantities
 
 MARK = "made_by_recreate"  # a file in a copy
 COPIED = ("validation", "benchmarks", "scenarios", "docs")
 PLACE = "FOLDER"  # stands in a command for a folder of beds and studies
+GIVEN = ("--meshes", "--kernels", "--samples")  # options of folders with files of others, which are not kept here
 COSTS = ("cpu_s_of_rows", "cpu_s_of_landings", "cpu_s")
+STUDY = "origin.json"  # says how a study of showcase was made
 NOTES = "recreated.json"  # in the folder of this script
 # Columns that no two runs have in common.
 MEASURED = {"cpu_s", "wall_s", "load", "date"}
@@ -51,19 +57,26 @@ class Case:
 
     path: Path
     command: str
-    table: Path | None
     cpu_s: float | None
+    table: Path | None = None
 
     @property
     def name(self) -> str:
         """By which it is asked for."""
-        return self.path.stem
+        return self.path.parent.name if self.path.name == STUDY else self.path.stem
+
+    @property
+    def reads_given(self) -> bool:
+        """Whether it reads files of others."""
+        return any(f"{option} {PLACE}" in self.command for option in GIVEN)
 
     @property
     def why_not(self) -> str | None:
         """Why one command does not recreate it; None where one does."""
-        given = self.command.replace(f"--work {PLACE}", "").replace(f"--out {PLACE}", "")
-        if PLACE in given or "..." in given or not given.startswith("python validation/"):
+        rest = self.command
+        for option in ("--work", "--out", *GIVEN):
+            rest = rest.replace(f"{option} {PLACE}", "")
+        if PLACE in rest or "..." in rest or not rest.startswith(("python validation/", "lithobrake run scenarios/")):
             return f"it takes a folder of its own: {self.command}"
         return None
 
@@ -71,6 +84,12 @@ class Case:
 def cases(root: Path = ROOT) -> dict[str, Case]:
     """All cases below a root, by name."""
     found, notes = {}, noted(root)
+    for path in sorted((root / "showcase").glob(f"*/{STUDY}")):
+        content = read_document(path)
+        own = Case(
+            path.relative_to(root), **{key: content.get("landings", content)[key] for key in ("command", "cpu_s")}
+        )
+        found[own.name] = own
     for path in sorted((root / "validation").rglob("*.json")):
         content = read_document(path)
         if isinstance(content, dict) and "command" in content:
@@ -89,7 +108,7 @@ def _case(path: Path, content: dict[str, Any], root: Path, notes: dict[str, Any]
         spent = cells(content)
         spent += [float(line["cpu_s"]) for line in lines(table) if line.get("cpu_s")] if own is not None else []
         cost = sum(spent) if spent else None
-    return Case(path.relative_to(root), content["command"], own, cost)
+    return Case(path.relative_to(root), content["command"], cost, own)
 
 
 def cells(content: Any) -> list[float]:
@@ -147,13 +166,16 @@ def copied(folder: Path) -> Path:
     return tree
 
 
-def run(case: Case, tree: Path, work: Path) -> tuple[float, float]:
+def run(case: Case, tree: Path, work: Path, given: Path | None) -> tuple[float, float]:
     """Run the command of a case in a copy; returns its time on the clock and its CPU time [s]."""
     words = shlex.split(case.command)
     for number, word in enumerate(words):
         if word == PLACE:
             # Rows that stay are beside the document, and so are those that are made.
-            words[number] = str(tree / case.path.parent if words[number - 1] == "--out" else work)
+            folders = {"--out": tree / case.path.parent, "--work": work}
+            words[number] = str(folders.get(words[number - 1], given))
+    if words[0] == "lithobrake":
+        words = ["python", "-m", *words, "--out", str(work / case.name)]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     start, spent = time.monotonic(), children_cpu()
     done = subprocess.run([sys.executable, *words[1:]], cwd=tree, env=environment, check=False)
@@ -210,15 +232,20 @@ def told(name: str, apart: list[dict[str, float]], spent: tuple[float, float]) -
     return max(worst.values(), default=0.0)
 
 
-def recreate(case: Case, rows: list[int] | None, work: Path, note: bool = False, within: float = math.inf) -> float:
+def recreate(
+    case: Case, rows: list[int] | None, work: Path, note: bool = False, within: float = math.inf,
+    given: Path | None = None,
+) -> float:  # fmt: skip
     """Make rows of a case anew, and print how they compare; returns the largest relative difference.
 
-    note: keep what it cost and how it compared, if all rows were made anew.
+    note: keep what it cost and how it compared, if all rows were made anew. given: folder with the files of others.
 
     Raises ValueError where one command does not recreate the case, or where it has no such row.
     """
     if case.why_not:
         raise ValueError(f"{case.name}: {case.why_not}")
+    if case.reads_given and given is None:
+        raise ValueError(f"{case.name} reads files of others; name their folder with --given. It ran: {case.command}")
     if case.table is None and rows is not None:
         raise ValueError(f"{case.name} has no table of rows; leave --rows out to make all of it anew.")
     if case.table is None and math.isfinite(within):
@@ -229,14 +256,15 @@ def recreate(case: Case, rows: list[int] | None, work: Path, note: bool = False,
     print(f"{case.name}: expects {expected(case, rows)}", flush=True)
     tree = copied(work)
     if case.table is None:
-        (tree / case.path).unlink()
-        spent = run(case, tree, work / "runs")
-        print(f"{case.name}: {spent[0]:.0f} s on the clock, {spent[1]:.0f} s of CPU time: {tree / case.path}")
+        (tree / case.path).unlink(missing_ok=True)
+        spent = run(case, tree, work / "runs", given)
+        made = work / "runs" / case.name if case.path.name == STUDY else tree / case.path
+        print(f"{case.name}: {spent[0]:.0f} s on the clock, {spent[1]:.0f} s of CPU time: {made}")
         if note:
             keep(case.name, spent[1], None)
         return 0.0
     old, rest = taken_out(tree / case.table, rows)
-    spent = run(case, tree, work / "runs")
+    spent = run(case, tree, work / "runs", given)
     new = lines(tree / case.table)
     if new[: len(rest)] == rest:  # otherwise the script wrote the whole table anew
         new = new[len(rest) :]
@@ -256,11 +284,12 @@ def keep(name: str, cpu: float, apart: list[dict[str, float]] | None) -> None:
 
 
 def listed(known: dict[str, Case]) -> None:
-    print(f"{'case':32} {'rows':>6} {'CPU time [s]':>14}  made by")
+    rest_on = Counter(one.made_by for own in kept_quantities().values() for one in own)
+    print(f"{'case':32} {'rows':>6} {'quantities':>10} {'CPU time [s]':>14}  made by")
     for case in known.values():
         count = "-" if case.table is None else str(len(lines(ROOT / case.table)))
         cost = "-" if case.cpu_s is None else f"{case.cpu_s:.4g}"
-        print(f"{case.name:32} {count:>6} {cost:>14}  {case.command}")
+        print(f"{case.name:32} {count:>6} {rest_on[case.name] or '-':>10} {cost:>14}  {case.command}")
 
 
 def main() -> int:
@@ -268,6 +297,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--rows", type=int, nargs="+", help="of one case, counted from 0")
     parser.add_argument("--note", action="store_true", help="keep what whole cases cost, and how they compared")
+    parser.add_argument("--given", type=Path, help="folder with the files of others that a case reads")
     parser.add_argument("--work", type=Path, help="folder of the copy and of beds; default: a new one")
     given, known = parser.parse_args(), cases()
     if not given.names:
@@ -281,7 +311,10 @@ def main() -> int:
     work: Path = given.work or Path(tempfile.mkdtemp(prefix="lithobrake_recreate_"))
     try:
         largest = max(
-            recreate(known[name], given.rows, work.resolve(), given.note, given.within) for name in given.names
+            recreate(
+                known[name], given.rows, work.resolve(), given.note, given.within, given.given and given.given.resolve()
+            )
+            for name in given.names
         )
     except ValueError as error:
         parser.error(str(error))

@@ -1,10 +1,12 @@
 """Studies that are made again, bands of the validation, and its descents."""
 
+import csv
 import json
 import runpy
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,8 @@ from lithobrake.smallbody import fly
 
 ROOT = Path(__file__).parents[2]
 RUNNER = runpy.run_path(str(ROOT / "validation" / "recreate.py"))
+with (ROOT / "validation" / "quantities.csv").open(newline="", encoding="utf-8") as file:
+    QUANTITIES = list(csv.DictReader(file))
 SCRIPT = """
 import csv, json, sys
 from pathlib import Path
@@ -89,9 +93,60 @@ def test_what_cannot_be_made_anew_is_refused_in_a_sentence(root: Path) -> None:
         RUNNER["recreate"](known["squares"], [3], root / "work")
 
 
+def test_files_of_others_are_asked_for_and_handed_on(root: Path) -> None:
+    folder = root / "validation"
+    (folder / "lengths.py").write_text(
+        "import sys\nfrom pathlib import Path\n"
+        "words = (Path(sys.argv[2]) / 'words.txt').read_text().split()\n"
+        "rows = ''.join(f'{word},{len(word)}\\n' for word in words)\n"
+        "Path(__file__).with_suffix('.csv').write_text(f'word,length\\n{rows}')\n"
+    )
+    (folder / "lengths.csv").write_text("word,length\nstone,5\nrock,4\n")
+    (folder / "lengths.json").write_text(json.dumps({"command": "python validation/lengths.py --meshes FOLDER"}))
+    (root / "others").mkdir()
+    (root / "others" / "words.txt").write_text("stone rock")
+    case = RUNNER["cases"](root)["lengths"]
+    with pytest.raises(ValueError, match="name their folder with --given"):
+        RUNNER["recreate"](case, None, root / "work")
+    assert RUNNER["recreate"](case, None, root / "work", given=root / "others") == 0.0
+
+
+def test_a_study_of_the_showcase_is_run_by_its_own_command(root: Path) -> None:
+    (root / "showcase" / "tiny").mkdir(parents=True)
+    landings = {"command": "lithobrake run scenarios/tiny.toml", "cpu_s": 7.0}
+    origin = {"command": "lithobrake run showcase/tiny/study.toml --out FOLDER", "cpu_s": 1.0, "landings": landings}
+    (root / "showcase" / "tiny" / "origin.json").write_text(json.dumps(origin))
+    case = RUNNER["cases"](root)["tiny"]
+    assert (case.command, case.cpu_s, case.why_not) == (landings["command"], 7.0, None)
+    with pytest.raises(ValueError, match="exit code"):  # lithobrake itself finds no scenarios/tiny.toml
+        RUNNER["recreate"](case, None, root / "work")
+
+
+def test_every_quantity_rests_on_a_case_that_one_command_makes_again() -> None:
+    known = RUNNER["cases"]()
+    made_by = {row["made_by"] for row in QUANTITIES}
+    assert len(made_by) > 10
+    assert {name: known[name].why_not for name in made_by if known[name].why_not} == {}
+
+
+def test_the_table_of_quantities_is_what_the_page_counts() -> None:
+    page = (ROOT / "docs" / "validation" / "index.md").read_text(encoding="utf-8")
+    agree = sum(row["agrees"] == "yes" for row in QUANTITIES)
+    assert f"{agree} of {len(QUANTITIES)} quantities agree" in page
+    assert len(QUANTITIES) >= 50
+    assert agree >= 30
+    assert {row["kind"] for row in QUANTITIES} == {"experiment", "flight", "code"}
+    assert [row for row in QUANTITIES if (row["agrees"] == "yes") == bool(row["cause"])] == []
+    unknown = [row["quantity"] for row in QUANTITIES if row["cause"] == "not shown"]
+    words = " ".join(page.partition("## Cause unknown")[2].partition("\n## ")[0].split())
+    assert [one for one in unknown if one not in words] == []
+    names = [(row["page"], row["quantity"]) for row in QUANTITIES]
+    assert len(set(names)) == len(names), "a quantity stands there twice"
+
+
 def test_every_case_of_the_repository_has_its_script() -> None:
     known = RUNNER["cases"]()
-    scripts = {case.command.split()[1] for case in known.values()}
+    scripts = {case.command.split()[1] for case in known.values() if case.command.startswith("python ")}
     assert scripts
     assert [script for script in sorted(scripts) if not (ROOT / script).exists()] == []
 
@@ -135,6 +190,56 @@ def test_no_and_every_longitude_have_words_and_agree_with_nothing() -> None:
 
 
 DESCENTS = runpy.run_path(str(Path(__file__).parents[2] / "validation" / "ballistic_descent" / "descents.py"))
+
+
+@pytest.fixture
+def sites(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """What validation/ballistic_descent/reliable_sites.py defines."""
+    for folder in ("benchmarks", "validation/ballistic_descent"):
+        monkeypatch.syspath_prepend(str(ROOT / folder))
+    return runpy.run_path(str(ROOT / "validation" / "ballistic_descent" / "reliable_sites.py"))
+
+
+def test_only_what_leaves_the_far_side_faster_than_the_closing_speed_passes_l2(sites: dict[str, Any]) -> None:
+    """L2 is where Hill's radius has it to its first order; against the flight of the package."""
+    body = DESCENTS["balls"]()
+    l2 = sites["lagrange_point"](body, -1.0)
+    share = DESCENTS["primary_share"](body)
+    hill = body.orbit.distance * ((1.0 - share) / 3.0) ** (1.0 / 3.0)
+    assert -l2 == pytest.approx(hill * (1.0 + hill / body.orbit.distance / 3.0), rel=0.02)
+    speed, far = sites["closing_speeds"](body)[18], np.array([-1.0, 0.0, 0.0])
+    farthest = []
+    for factor in (0.97, 1.15):
+        place, velocity = DESCENTS["radius"](body) * far[None], factor * speed * far[None]
+        reach = 0.0
+        for _ in range(2000):
+            place, velocity = DESCENTS["step"](body, place, velocity, 1.0)
+            if np.linalg.norm(place[0]) < DESCENTS["radius"](body):
+                break
+            reach = max(reach, float(np.linalg.norm(place[0])))
+        farthest.append(reach)
+    assert farthest[0] < -l2 < farthest[1]
+
+
+def test_the_linear_chance_is_the_share_of_flights_that_meet_the_moon(sites: dict[str, Any]) -> None:
+    body, up = DESCENTS["balls"](), sites["directions"]()[18:19]
+    descents = sites["back_in_time"](body, up, np.array([0.073]), (600.0,), True)[600.0]
+    chance = sites["chances"](body, up, descents)[0]
+    errors = np.random.default_rng(5).standard_normal((100, 6)) * ([30.0] * 3 + [0.02 / 3.0] * 3)
+    states = descents.states + errors
+    met = fly(body, states[:, :3], states[:, 3:], 3.0 * 3600.0 + descents.times[0]).status == "impact"
+    assert 0.3 < chance < 0.95
+    assert chance == pytest.approx(np.mean(met), abs=0.12)  # 100 flights
+
+
+def test_no_release_outside_is_nearer_to_the_barycentre_than_the_moon(sites: dict[str, Any]) -> None:
+    body, up = DESCENTS["balls"](), sites["directions"]()
+    descents = sites["back_in_time"](body, up, np.full(len(up), 0.09), (200.0,), True)[200.0]
+    states = descents.states[np.isfinite(descents.times)]
+    orbit = DESCENTS["primary_share"](body) * body.orbit.distance
+    assert len(states) > 10
+    assert (np.hypot(states[:, 0] - orbit, states[:, 1]) > orbit).all()
+    assert (np.linalg.norm(states[:, :3], axis=1) > 200.0).all()
 
 
 def test_a_descent_flown_forward_comes_down_vertically_at_its_site() -> None:

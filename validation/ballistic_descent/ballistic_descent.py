@@ -85,6 +85,10 @@ def site_rows(body: Body, distance: float, latitude: float, ground: str, bounce:
     return rows
 
 
+def hard_ground(restitution: float) -> HardSurface:
+    return HardSurface(restitution, TANGENTIAL, FRICTION)
+
+
 def soil(work: Path) -> RecordedSoil:
     """The touchdowns of the mission study, which is run where it is not there."""
     folder = work / "mission"
@@ -96,7 +100,7 @@ def main() -> None:
     given = command_line(__doc__, work=Path, out=HERE).parse_args()
     table, body = given.out / TABLE, balls()
     there = {(row["distance_m"], row["ground"], row["latitude_deg"]) for row in read_rows(table, KINDS)}
-    grounds: dict[str, Bounce] = {f"e = {one:g}": HardSurface(one, TANGENTIAL, FRICTION) for one in RESTITUTIONS}
+    grounds: dict[str, Bounce] = {f"e = {one:g}": hard_ground(one) for one in RESTITUTIONS}
     for ground in [*grounds, "soil"]:
         sets = [(distance, 0.0) for distance in DISTANCES] + [(MAP_DISTANCE, one) for one in LATITUDES[1:]]
         for distance, latitude in sets:

@@ -45,11 +45,16 @@ class Descents:
     times: Floats
 
 
+def primary_share(body: Body) -> float:
+    """The primary's part of the mass of both; the moon is that part of their distance off the barycentre."""
+    assert body.partner is not None
+    return body.partner.body.mass / (body.mass + body.partner.body.mass)
+
+
 def acceleration(body: Body, place: Floats, velocity: Floats, sense: float) -> Floats:
     """Acceleration [m/s2] in the turning frame, [count, 3]; sense -1: of the flight back in time."""
     assert body.partner is not None
-    apart, rate = body.orbit.distance, body.spin_rate
-    share = body.partner.body.mass / (body.mass + body.partner.body.mass)
+    apart, rate, share = body.orbit.distance, body.spin_rate, primary_share(body)
     to_primary = place - [apart, 0.0, 0.0]
     total = -body.gravitational_parameter * place / np.linalg.norm(place, axis=1)[:, None] ** 3
     total -= body.partner.body.gravitational_parameter * to_primary / np.linalg.norm(to_primary, axis=1)[:, None] ** 3
@@ -58,11 +63,14 @@ def acceleration(body: Body, place: Floats, velocity: Floats, sense: float) -> F
     return np.asarray(total - 2.0 * sense * rate * turned)
 
 
-def back_in_time(body: Body, up: Floats, speed: Floats, distances: tuple[float, ...]) -> dict[float, Descents]:
+def back_in_time(
+    body: Body, up: Floats, speed: Floats, distances: tuple[float, ...], outside: bool = False
+) -> dict[float, Descents]:
     """Descents that end at the ground below directions [count, 3] with vertical speeds [m/s], [count].
 
-    distances [m]: from the moon's centre, at which the lander is released; each has its own states. A descent that
-    would come out of a body, or lasts longer than LONGEST, has none.
+    distances [m]: from the moon's centre, at which the lander is released; each has its own states. outside: no release
+    is nearer to the barycentre than the moon. A descent that would come out of a body, or lasts longer than LONGEST,
+    has none.
     """
     assert body.partner is not None
     place, velocity = radius(body) * up, speed[:, None] * up
@@ -70,23 +78,25 @@ def back_in_time(body: Body, up: Floats, speed: Floats, distances: tuple[float, 
     found = {one: Descents(np.full((len(up), 6), np.nan), np.full(len(up), np.nan)) for one in distances}
     is_aloft = np.ones(len(up), dtype=bool)
     for number in range(1, round(LONGEST / STEP) + 1):
-        there, going = _step(body, place[is_aloft], velocity[is_aloft])
+        there, going = step(body, place[is_aloft], velocity[is_aloft], -1.0)
         place[is_aloft], velocity[is_aloft] = there, going
         height = np.linalg.norm(place, axis=1)
         is_aloft &= (height > ground) & (np.linalg.norm(place - [body.orbit.distance, 0.0, 0.0], axis=1) > primary)
+        from_centre = np.hypot(place[:, 0] - primary_share(body) * body.orbit.distance, place[:, 1])
+        is_free = is_aloft & (not outside or from_centre > primary_share(body) * body.orbit.distance)
         for distance, descents in found.items():
-            new = is_aloft & (height > distance) & np.isnan(descents.times)
+            new = is_free & (height > distance) & np.isnan(descents.times)
             descents.times[new] = number * STEP
             descents.states[new] = np.hstack([place[new], -velocity[new]])
     return found
 
 
-def _step(body: Body, place: Floats, velocity: Floats) -> tuple[Floats, Floats]:
-    """One step of the Runge-Kutta method of fourth order, back in time."""
-    rates = [(velocity, acceleration(body, place, velocity, -1.0))]
+def step(body: Body, place: Floats, velocity: Floats, sense: float) -> tuple[Floats, Floats]:
+    """One step of the Runge-Kutta method of fourth order; sense -1: back in time, with the velocity of that flight."""
+    rates = [(velocity, acceleration(body, place, velocity, sense))]
     for part in (0.5, 0.5, 1.0):
         going = velocity + part * STEP * rates[-1][1]
-        rates.append((going, acceleration(body, place + part * STEP * rates[-1][0], going, -1.0)))
+        rates.append((going, acceleration(body, place + part * STEP * rates[-1][0], going, sense)))
     weights = (1.0, 2.0, 2.0, 1.0)
     moved = [sum(w * rate[which] for w, rate in zip(weights, rates, strict=True)) for which in (0, 1)]
     return place + STEP / 6.0 * moved[0], velocity + STEP / 6.0 * moved[1]

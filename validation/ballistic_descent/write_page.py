@@ -1,4 +1,4 @@
-"""Write docs/validation/ballistic_descent.md and its figure from ballistic_descent.csv.
+"""Write docs/validation/ballistic_descent.md and its figures from ballistic_descent.csv and reliable_sites.csv.
 
 python validation/ballistic_descent/write_page.py
 """
@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 from ballistic_descent import DISTANCES, HERE, KINDS, LATITUDES, LONGITUDES, MAP_DISTANCE, RESTITUTIONS, SPEEDS, TABLE
 from bands import Band, band_of
+from reliable_part import BAR, LEVELS, PUBLISHED, inside, quantity, reliable_numbers, sites
+from reliable_part import draw as draw_sites
 
 from lithobrake.report.figures.style import INK
 
@@ -17,10 +19,8 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from drawing import figure, plt
 from harness import PAGES, Row, read_document, read_rows
 from page import made, table, write_page
+from quantities import keep_quantities
 
-LEVELS = (0.5, 0.7, 0.8, 0.9)  # shares at rest from which a site counts as reliable
-PUBLISHED = Band(320.0, 380.0)  # deg east of the meridian that looks away from the primary
-BAR = 10.0  # deg, for either end of the band
 GROUNDS = (*(f"e = {one:g}" for one in RESTITUTIONS), "soil")
 
 
@@ -82,11 +82,6 @@ def draw(rows: list[Row], to: Path) -> None:
         drawn.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=len(DISTANCES))
 
 
-def inside() -> np.ndarray:
-    """Which longitudes lie in the published band."""
-    return np.asarray((LONGITUDES - PUBLISHED.begin) % 360.0 <= PUBLISHED.end - PUBLISHED.begin)
-
-
 def mean_shares(rows: list[Row], ground: str, distance: float) -> list[float]:
     """Mean shares at rest in the published band and elsewhere, at the least and then at the best speed."""
     found = []
@@ -104,7 +99,7 @@ def mean_table(rows: list[Row]) -> str:
     ))  # fmt: skip
 
 
-def numbers(rows: list[Row]) -> dict[str, str | int]:
+def numbers(rows: list[Row]) -> dict[str, object]:
     hard = [ground for ground in GROUNDS if ground != "soil"]
     real = [
         band for ground in hard for found in bands(rows, ground).values() for band in found
@@ -138,8 +133,12 @@ def main() -> None:
     kept = read_document((HERE / TABLE).with_suffix(".json"))
     draw(rows, PAGES / "ballistic_descent.png")
     tables = [f"### {title(ground).capitalize()}\n\n{band_table(rows, ground)}" for ground in GROUNDS]
+    reliable, found = sites(), numbers(rows)
+    draw_sites(reliable, PAGES / "ballistic_descent_reliable.png")
+    found |= reliable_numbers(reliable, (found["agree"], found["bounded"]))
+    keep_quantities("ballistic_descent", {"ballistic descents to Dimorphos": [quantity(reliable)]})
     write_page(
-        "ballistic_descent", **numbers(rows), radius=f"{kept['moon_radius_m']:.1f}", apart=f"{kept['apart_m']:.0f}",
+        "ballistic_descent", **found, radius=f"{kept['moon_radius_m']:.1f}", apart=f"{kept['apart_m']:.0f}",
         means=mean_table(rows), bands="\n\n".join(tables), map=f"{MAP_DISTANCE:g}", latitudes=latitude_table(rows),
         made=made(kept, f"{kept['cpu_s_of_rows']} s of CPU time"),
     )  # fmt: skip

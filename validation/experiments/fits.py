@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from quantities import NOT_SHOWN
 from result_rows import Row
 from scipy.stats import t as student
 from sphere_bed import Floats
 
-NOT_SHOWN = "not shown"
 SHARE = 0.25  # of a measured value: the tolerance of prefactors, coefficients, times, depths, speeds and densities
 
 
@@ -121,6 +121,7 @@ class Line(NamedTuple):
     ratio: str
     agrees: bool
     cause: str = NOT_SHOWN
+    tolerance: str = ""
 
     def cells(self) -> list[str]:
         cells = [self.quantity, self.measured, self.ours, str(self.rows), self.ratio, "yes" if self.agrees else "no"]
@@ -143,4 +144,5 @@ def line(
     """Return a row of the table: it agrees where our value is within a bar of the measured one."""
     ratio = f"{ours.value / measured:.2f}" if measured else "-"
     agrees = abs(ours.value - measured) <= bar
-    return Line(quantity, text or f"{measured:.3g}", said(ours), ours.rows, ratio, agrees, cause)
+    tolerance = f"{100.0 * bar / measured:.0f} %" if bar == SHARE * measured else f"{bar:g}"
+    return Line(quantity, text or f"{measured:.3g}", said(ours), ours.rows, ratio, agrees, cause, tolerance)

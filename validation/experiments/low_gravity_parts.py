@@ -6,9 +6,10 @@ import textwrap
 import numpy as np
 from ball_under_gravities import KINDS
 from draw import of_balls, of_packing, of_plates
-from fits import NOT_SHOWN, Estimate, Lines, column, line, mean_of, powers, said
+from fits import Estimate, Lines, column, line, mean_of, powers, said
 from page import table, yes
 from plate_into_loose_grains import SPEED
+from quantities import NOT_SHOWN
 from result_rows import FIGURES, HERE, Row, read_rows
 
 BENNU = 1190.0  # kg/m3, bulk density

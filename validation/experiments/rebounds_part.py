@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 from draw import INK, MEASURED
 from drawing import figure
-from fits import NOT_SHOWN, Line, Lines, column, line, mean_of
+from fits import Line, Lines, column, line, mean_of
 from page import table, two_digits
+from quantities import NOT_SHOWN
 from result_rows import FIGURES, HERE, Row, read_rows
 
 from lithobrake.analysis import wilson_interval
@@ -44,7 +45,7 @@ def share_line(quantity: str, measured: str, expected: float, rows: list[Row], c
     count, total = rebounds(rows), len(rows)
     low, high = wilson_interval(count, total)
     ours = f"{count / total:.2f} ({low:.2f} to {high:.2f})"
-    return Line(quantity, measured, ours, total, "-", abs(count / total - expected) < 0.5, cause)
+    return Line(quantity, measured, ours, total, "-", abs(count / total - expected) < 0.5, cause, "more than half")
 
 
 def between(rows: list[Row], kind: str, share: float, slow: float, fast: float) -> list[Row]:

@@ -64,7 +64,7 @@ def stopping_part() -> tuple[Lines, str]:
         line("friction over mass k/m [1/s2]", MEASURED.friction, friction, SHARE * MEASURED.friction, "1040 +- 10"),
         line("inertial length d1 [mm]", MM * MEASURED.length, in_mm(length), SHARE * MM * MEASURED.length, "87 +- 7"),
         Line("stopping time, slowest to fastest steel ball [ms]", "decreases", times_said(COMPARED), len(steel()), "-",
-             bool((np.diff(stopping_times(COMPARED)) < 0.0).all())),
+             bool((np.diff(stopping_times(COMPARED)) < 0.0).all()), tolerance="each less than the one before"),
     ]  # fmt: skip
     of_forces(looks(STEEL), DEPTHS(looks(STEEL))[1], MEASURED, SHARE, FIGURES / "stopping_force.png")
     return lines, "\n\n".join((depth_table(), bed_table(), law_table()))

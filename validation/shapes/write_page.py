@@ -16,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from drawing import figure
 from harness import PAGES, Row, read_document, read_rows
 from page import made, table, write_page, yes
+from quantities import CODE, NOT_SHOWN, Quantity, counts, keep_quantities
 
 HEADS = ("quantity", "published", "here", "here / published", "agrees", "cause shown by")
 TURNED = "normals that face the centre, turned outward as the source turns them"
@@ -60,20 +61,18 @@ def cause_of(one: Published, rows: dict[str, Row]) -> str:
     for mesh, measure, words in tried:
         if agrees(rows[mesh][measure], one):
             return f"{words}: {rows[mesh][measure]:.4g}"
-    return "not shown"
+    return NOT_SHOWN
 
 
-def quantities() -> list[tuple[bool, tuple[str, ...]]]:
-    """Whether each quantity agrees, and its cells."""
+def quantities() -> list[Quantity]:
+    """The quantities of the page."""
     lines = []
     for one in PUBLISHED:
         own = {row["mesh"]: row for row in slopes() if (row["body"], row["density"]) == (one.body, one.density)}
         value = own["public"][one.measure]
         held = agrees(value, one)
-        cause = "" if held else cause_of(one, own)
-        lines.append(
-            (held, (one.words, f"{one.value:g}", f"{value:.4g}", f"{value / one.value:.3f}", yes(held), cause))
-        )
+        cells = (one.words, f"{one.value:g}", f"{value:.4g}", f"{value / one.value:.3f}", f"{100.0 * WITHIN:.0f} %")
+        lines.append(Quantity(CODE, *cells, held, "slopes", NOT_SHOWN if held else cause_of(one, own)))
     every = read_rows(HERE / "slopes_facets.csv", {"body": str, "mesh": str})
     worst = min(row["correlation"] for row in every)
     largest, close = max(row["rms_deg"] for row in every), min(row["close_share"] for row in every)
@@ -82,7 +81,8 @@ def quantities() -> list[tuple[bool, tuple[str, ...]]]:
         ("rms difference facet by facet [deg]", f"{RMS_DEG:g}", f"{largest:.3f}", largest <= RMS_DEG),
         ("facets within 2 deg", f"{CLOSE_SHARE:.1%}", f"{close:.1%}", close >= CLOSE_SHARE),
     ):
-        lines.append((held, (f"{words}, worst of {len(every)} meshes", shown, value, "", yes(held), "")))
+        cells = (f"{words}, worst of {len(every)} meshes", shown, value, "", "no worse than the source")
+        lines.append(Quantity(CODE, *cells, held, "slopes_facets"))
     return lines
 
 
@@ -164,20 +164,20 @@ def equator() -> dict[str, str]:
 def main() -> None:
     travelled, moved = ends()
     lines = quantities()
-    agreeing = sum(held for held, _ in lines)
-    shown = sum(not held and cells[-1] != "not shown" for held, cells in lines)
+    count, agreeing, shown, unknown = counts(lines)
+    cells = ((one.quantity, one.other, one.here, one.error, yes(one.agrees), one.shown) for one in lines)
     kept = {name: read_document(HERE / f"{name}.json") for name in ("slopes", "slopes_facets", "ladder")}
     write_page(
-        "shapes", count=len(lines), agreeing=agreeing, shown=shown, open=len(lines) - agreeing - shown,
-        quantities=table(HEADS, (cells for _, cells in lines)), facets=facet_table(), ladder=ladder_table(),
-        within=f"{100.0 * WITHIN:g} %", gravity_enough=enough("gravity_median", GRAVITY),
+        "shapes", count=count, agreeing=agreeing, shown=shown, open=unknown, quantities=table(HEADS, cells),
+        facets=facet_table(), ladder=ladder_table(), within=f"{100.0 * WITHIN:g} %",
+        gravity_enough=enough("gravity_median", GRAVITY),
         slope_enough=enough("slope_rms_deg", SLOPE), end_enough=enough("apart", END),
         travelled=travelled, moved=moved, **equator(),
         slopes_made=made(kept["slopes"], f"{kept['slopes']['cpu_s']} s of CPU time"),
         ladder_made=made(kept["ladder"], f"{kept['ladder']['cpu_s']} s of CPU time"),
     )  # fmt: skip
+    keep_quantities("shapes", {"slopes of small bodies": lines})
     draw()
-    print(f"{agreeing} of {len(lines)} agree, {shown} with a cause")
 
 
 if __name__ == "__main__":
