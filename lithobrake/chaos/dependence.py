@@ -150,7 +150,7 @@ def shapley_effects(
         if len(known) == len(players):
             explained = values**2
         else:
-            again = copula.drawn_again(normal, kept, random.standard_normal(normal.shape))
+            again = copula.drawn_again(normal, kept, random.standard_normal((size, len(factor))))
             explained = values * _centred(surrogate, copula, again)
         for player in range(len(players)):
             products[player] += _weight(len(players), len(known), player in known) * explained
