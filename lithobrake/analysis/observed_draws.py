@@ -80,8 +80,8 @@ def observed_draws(
     The kernel is normal in coordinates asinh(y / median), in which large outputs count by their ratio, and the errors
     widen it. Raises ValueError where no draw is possible, for an output without draws, and for errors below 0.
     """
-    for name, error in errors.items():
-        finite_number(f"the error of {name}", error, at_least=0.0)
+    for name, deviation in errors.items():
+        finite_number(f"the error of {name}", deviation, at_least=0.0)
     if unknown := sorted(set(observed) - set(outputs)):
         raise ValueError(f"{unknown[0]} is observed, which no draw has; allowed: {', '.join(outputs) or 'none'}")
     there = possible & np.all([np.isfinite(outputs[name]) for name in observed], axis=0)
@@ -93,14 +93,14 @@ def observed_draws(
     scaled = [_Scaled.of(outputs[name][there], float(observed[name]), errors.get(name, 0.0)) for name in observed]
     away = np.column_stack([one.draws - one.seen for one in scaled])
     error = np.array([one.error for one in scaled])
-    found, width = np.empty(0), WIDTHS[0]
-    for width in WIDTHS:
-        found = np.zeros(len(possible))
+    found, width = np.zeros(len(possible)), WIDTHS[0]
+    for wider in WIDTHS:
+        width = wider
         found[there] = _normalised(-0.5 * np.sum(away**2 / (width**2 + error**2), axis=1))
         if _effective(found, source) >= ENOUGH:
             break
-    p_value = _p_value(away, np.hypot(width, error), error, seed)
-    return ObservedDraws(found, width, _effective(found, source), p_value)
+    kernel: Array = np.sqrt(width**2 + error**2)
+    return ObservedDraws(found, width, _effective(found, source), _p_value(away, kernel, error, seed))
 
 
 @dataclass(frozen=True)
@@ -141,8 +141,9 @@ def _p_value(away: Array, width: Array, error: Array, seed: int) -> float:
     seen = away[replicates] + error * random.standard_normal((len(replicates), away.shape[1]))
     centres = away[others] / width
 
-    def density(at: Array) -> float:
-        return float(logsumexp(-0.5 * np.sum((centres - at / width) ** 2, axis=1)))
+    def density(at: Array) -> Array:
+        """Of points [point_count, output_count], [point_count]."""
+        return np.array([logsumexp(-0.5 * np.sum((centres - one / width) ** 2, axis=1)) for one in at])
 
-    observed = density(np.zeros(away.shape[1]))
-    return float(np.mean([density(one) <= observed for one in seen]))
+    observed = density(np.zeros((1, away.shape[1])))
+    return float(np.mean(density(seen) <= observed))

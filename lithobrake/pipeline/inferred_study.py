@@ -149,7 +149,8 @@ class InferredStudy:
         study = with_site_gravity(source.study)
         if study.ground is not None:
             raise ValueError(
-                f"{path} has [ground], and bounces tell the soil of one ground; infer from a study of one ground"
+                f"{path} has [ground], and bounces tell the soil of one ground; infer from a study of one ground, or "
+                "give a first contact, one row, to a study of journeys to rest"
             )
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all((folder / name).is_file() for name in bed_files(study)):

@@ -53,8 +53,10 @@ def _kinds(found: Mapping[str, Any]) -> str:
 def _share(one: Sequence[float | None], level: float) -> str:
     lower, value, upper = one
     assert value is not None
-    return percent(value) if lower is None or upper is None else (
-        f"{percent(value)} ({at_level(level)} {span(lower, upper)})"
+    return (
+        percent(value)
+        if lower is None or upper is None
+        else (f"{percent(value)} ({at_level(level)} {span(lower, upper)})")
     )
 
 
@@ -81,7 +83,7 @@ def _rest(found: Mapping[str, Any]) -> list[str]:
     rest, level = found["rest"], found["level"]
     said = [f"At rest: {_share(rest['at_rest']['after'], level)}, before {percent(rest['at_rest']['before'])}."]
     if rest["unknown"] > 0.0:
-        said.append(f"Ends that the emulator does not know: {percent(rest['unknown'], 1)}; the interval holds either way.")
+        said.append(f"Ends that the emulator does not know: {percent(rest['unknown'], 1)}.")
     if rest["time_s"]["after"][1] is None:
         return said
     lower, middle, upper = rest["time_s"]["after"]
@@ -90,7 +92,9 @@ def _rest(found: Mapping[str, Any]) -> list[str]:
     ways = {"from_contact_m": "from the first contact", "distance_m": "from the aim point"}
     told = [f"{_number(rest[name], 'm', level)} {words}" for name, words in ways.items()]
     said.append(f"Place of rest: {listing(told)}.")
-    if rest["sides"]:
+    if not rest["sides"]:
+        said.append("Side down: too few simulated journeys had a like contact to tell.")
+    else:
         sides = [f"{side} {_share(one, level)}" for side, one in rest["sides"].items()]
         said.append(f"Side down, by simulated journeys with a like contact: {'; '.join(sides)}.")
     return said

@@ -103,10 +103,10 @@ def _laws(axes: Axes, before: Array, after: Array) -> None:
 def _map(axes: Axes, before: Mapping[str, Array], after: Mapping[str, Array], ways: Any) -> None:
     """Places of rest in metres east and north of the aim point."""
     found = []
-    for one, look in ((before, {"color": TEST_ALL, "alpha": 0.6}), (after, {"color": LANDER, "alpha": 0.6})):
+    for one, colour in ((before, TEST_ALL), (after, LANDER)):
         rests = np.isfinite(one["latitude_deg"])
         places = ways(one["latitude_deg"][rests], one["longitude_deg"][rests])
-        axes.plot(*places.T, ".", markersize=3.0, markeredgewidth=0.0, **look)
+        axes.plot(*places.T, ".", markersize=3.0, markeredgewidth=0.0, color=colour, alpha=0.6)
         found.append(places)
     axes.plot(0.0, 0.0, "+", color=INK, markersize=8)
     both = np.concatenate(found)
@@ -114,7 +114,7 @@ def _map(axes: Axes, before: Mapping[str, Array], after: Mapping[str, Array], wa
         low, high = np.quantile(both, [0.5 - 0.5 * SHOWN, 0.5 + 0.5 * SHOWN], axis=0)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal", adjustable="box", anchor="W")
     axes.set_xlabel("east of the aim point [m]")
     axes.set_ylabel("north [m]")
     axes.set_title("place of rest; cross: aim point", fontsize=9)

@@ -48,8 +48,8 @@ class ContactRecord:
             raise ValueError(f"{path} has {len(record.time)} samples; allowed: at least {FEWEST_SAMPLES}; {REMEDY}")
         steps = np.diff(record.time)
         if (steps <= 0.0).any():
-            row = int(np.argmax(steps <= 0.0)) + 2
-            raise ValueError(f"{path} goes back in time in row {row}; sort its rows by time, each time once")
+            back = int(np.argmax(steps <= 0.0)) + 2
+            raise ValueError(f"{path} goes back in time in row {back}; sort its rows by time, each time once")
         if record.acceleration.max() < LEAST_PEAK:
             raise ValueError(f"{path} has no acceleration above 0, so no contact; give the record of the first contact")
         first, last = record.contact
@@ -108,8 +108,8 @@ def _column(path: Path, table: CsvTable, name: str) -> Array:
             raise DamagedFileError(f'{path} has "{row[name]}" for {name} in row {number}; write a number') from error
     found = np.array(values)
     if not np.isfinite(found).all():
-        row = int(np.argmin(np.isfinite(found))) + 1
-        raise ValueError(f"{path} has {found[row - 1]} for {name} in row {row}; leave out samples without a number")
+        lost = int(np.argmin(np.isfinite(found)))
+        raise ValueError(f"{path} has {found[lost]} for {name} in row {lost + 1}; leave out samples without a number")
     return found
 
 
@@ -122,7 +122,9 @@ def read_contact(path: str | os.PathLike[str]) -> Observation:
         return ContactRecord.read(Path(path), read_table(path, (), REMEDY)).observation()
     found = read_bounces(path)
     if len(found) > 1:
-        raise ValueError(f"{path} has {len(found)} bounces; where the lander rests follows from its first: keep its row")
+        raise ValueError(
+            f"{path} has {len(found)} bounces; where the lander rests follows from its first: keep its row"
+        )
     return found[0]
 
 
@@ -143,7 +145,7 @@ def checked_contact(contact: Observation, bounds: Mapping[str, tuple[float, floa
             raise ValueError(f"{where} has {value:g} for {name}; allowed: {ends}; look at sign and unit")
     for name, error in contact.errors.items():
         if name not in contact.outputs or not 0.0 <= error < np.inf:
-            raise ValueError(f"{where} has {error:g} for error:{name}; allowed: 0 or more, of an output that was observed")
+            raise ValueError(f"{where} has {error:g} for error:{name}; allowed: 0 or more, of what was observed")
     if contact.outcome not in (None, "clear") and contact.outputs:
         raise ValueError(
             f"{where} has the outcome {contact.outcome} and {', '.join(contact.outputs)}; allowed: outputs of a lander "

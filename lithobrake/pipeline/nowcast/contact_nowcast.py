@@ -1,6 +1,6 @@
 """From a first contact that was observed to the ground under it and the place of rest, by landings made before."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -11,45 +11,32 @@ import numpy as np
 from lithobrake.analysis import LEVEL, Estimate, Observation, share_estimate
 from lithobrake.analysis.observed_draws import ObservedDraws, observed_draws, weighted_quantiles
 from lithobrake.files.atomic import write_json, write_rows
-from lithobrake.geometry.attitude import about_z, angles, quaternion
 from lithobrake.pipeline.answer.dispersion_statistics import place_ellipses
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.mean_miss import offsets
-from lithobrake.pipeline.contact_emulator import (
-    AfterContact,
-    FirstContacts,
-    contact_bounds,
-    contact_emulator,
-)
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_contact import checked_contact, read_contact
-from lithobrake.pipeline.inferred_study import DRAWN
+from lithobrake.pipeline.inferred_study import DRAWN, read_bounces
 from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
-from lithobrake.pipeline.journeys.emulated_touchdowns import EmulatedTouchdowns
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
-from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.journeys.touchdown_emulator import ARRIVAL_TABLES, TouchdownEmulator, why_no_emulator
+from lithobrake.pipeline.nowcast.contact_emulator import FirstContacts, contact_bounds, contact_emulator
+from lithobrake.pipeline.nowcast.contact_landers import ENDS, ContactLanders, with_known
+from lithobrake.pipeline.nowcast.observed_contact import checked_contact, is_record, read_contact
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder
-from lithobrake.smallbody.landers import follow
 from lithobrake.statements.nowcast import statement
 from lithobrake.study.units import input_units
-from lithobrake.vocabulary.array_types import Array, Integers
+from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE
-from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
     GROUND_KIND,
     GROUND_SIZE,
-    IMPACT_AZIMUTH,
     IMPACT_INCIDENCE,
     IMPACT_SPEED,
     JOURNEY_DESIGN,
-    ORIENTATION,
-    SPIN,
-    UNKNOWN_END,
-    Row,
 )
 
 NOWCAST, TABLE, FIGURE = "nowcast.json", "nowcast.csv", "nowcast.png"
@@ -58,9 +45,6 @@ LANDERS, COPIES = 2000, 50
 FOLLOWED = 1000
 # Landers that are flown to the ground take a flight each.
 FLOWN_LANDERS = 1000
-# What may be known of the arrival.
-KNOWN = (IMPACT_SPEED, IMPACT_INCIDENCE, *SPIN, *ORIENTATION)
-ENDS = (0.5 - 0.5 * LEVEL, 0.5, 0.5 + 0.5 * LEVEL)
 # Simulated journeys that resemble the contact: fewer say nothing of sides.
 FEWEST_JOURNEYS = 20.0
 COLUMNS = ("sample", "refit", "end", "time_s", "latitude_deg", "longitude_deg", "distance [m]", "from_contact [m]")
@@ -111,97 +95,6 @@ class NowcastStudy:
         return JourneyTable.load(self.folder)
 
 
-def with_known(begin: Arrivals, known: Mapping[str, float], where: str) -> Arrivals:
-    """Landers with what is known of their arrival in the place of the draw.
-
-    Attitude and spin are those in the frame of the touchdown: x along the incoming horizontal velocity, z outward.
-    Raises ValueError, with the file, for what is no part of an arrival, and a part of an attitude alone.
-    """
-    if unknown := sorted(set(known) - set(KNOWN)):
-        raise ValueError(f"{where} gives {unknown[0]} of the contact; allowed: {', '.join(KNOWN)}")
-    orientation = [known[name] for name in ORIENTATION if name in known]
-    if orientation and (len(orientation) < len(ORIENTATION) or not np.linalg.norm(orientation) > 0.0):
-        raise ValueError(f"{where} gives a part of the attitude; allowed: all four of {', '.join(ORIENTATION)}, not all 0")
-    if not known:
-        return begin
-    unit = np.array(orientation) / np.linalg.norm(orientation) if orientation else ()
-    given = {**known, **dict(zip(ORIENTATION, map(float, unit), strict=False))}
-    turns = any(name in known for name in (*SPIN, *ORIENTATION))
-    rows = [(_in_frame(row) if turns else row) | given for row in begin.rows]
-    return replace(begin, rows=rows)
-
-
-def _in_frame(row: Row) -> Row:
-    """A first touchdown with attitude and spin turned so that the azimuth is 0."""
-    from scipy.spatial.transform import Rotation
-
-    turn = about_z(-np.radians(row[IMPACT_AZIMUTH]))
-    spin = turn.apply([row[name] for name in SPIN])
-    attitude = Rotation.from_quat([row[name] for name in ORIENTATION], scalar_first=True)
-    turned = zip((*SPIN, *ORIENTATION), (*spin.tolist(), *quaternion(turn * attitude)), strict=True)
-    return row | dict(turned) | {IMPACT_AZIMUTH: 0.0}
-
-
-@dataclass(frozen=True)
-class FollowedLanders:
-    """Landers from their first contact to their ends, [lander_count]; numbers are NaN where a lander does not rest.
-
-    contact: place of each among the first contacts; from_contact [m]: over the ground, from the first contact.
-    """
-
-    contact: Integers
-    refit: Integers
-    end: np.ndarray
-    numbers: Mapping[str, Array]
-
-    @classmethod
-    def of(
-        cls, contacts: FirstContacts, which: Integers, contact: Observation, title: str
-    ) -> "FollowedLanders":
-        """Those of some first contacts, with the motion after them that was observed."""
-        begin = contacts.begin.taken(contacts.lander[which], contacts.refit[which])
-        landers = StudyLanders.of(contacts.emulator.design, begin)
-        first = contacts.answers(which, contact.outputs, contact.errors)
-        follow(landers, AfterContact(first, EmulatedTouchdowns(contacts.emulator, begin, title)))
-        rests, site = landers.end == JourneyEnd.AT_REST, contacts.emulator.design.site
-        numbers = {
-            "time_s": landers.time,
-            "latitude_deg": landers.latitude,
-            "longitude_deg": landers.longitude,
-            "distance": landers.ways_from_aims,
-            "from_contact": site.aim_radius * angles(_units(begin.origin), _units(landers.position)),
-        }
-        known = {name: np.where(rests, values, np.nan) for name, values in numbers.items()}
-        return cls(which, contacts.refit[which], landers.end.astype(str), known)
-
-    @property
-    def rests(self) -> np.ndarray:
-        rests: np.ndarray = self.end == JourneyEnd.AT_REST.value
-        return rests
-
-    @property
-    def unknown(self) -> np.ndarray:
-        unknown: np.ndarray = self.end == UNKNOWN_END
-        return unknown
-
-    def quantiles(self, name: str) -> list[float | None]:
-        """Ends and median of the interval of a number of the landers at rest; None where none rests."""
-        found = weighted_quantiles(self.numbers[name], np.ones(len(self.end)), ENDS)
-        return [value if np.isfinite(value) else None for value in found]
-
-    def rows(self) -> list[list[Any]]:
-        """Rows of the table, "" for what a lander does not have."""
-        numbers = zip(*(values.tolist() for values in self.numbers.values()), strict=True)
-        cells = ([value if np.isfinite(value) else "" for value in row] for row in numbers)
-        words = enumerate(zip(self.refit.tolist(), self.end.tolist(), strict=True))
-        return [[number, *own, *row] for (number, own), row in zip(words, cells, strict=True)]
-
-
-def _units(places: Array) -> Array:
-    units: Array = places / np.linalg.norm(places, axis=1, keepdims=True)
-    return units
-
-
 @dataclass(frozen=True)
 class Nowcast:
     """What a first contact says: contacts of the prior with weights, and landers followed from some of them."""
@@ -210,8 +103,8 @@ class Nowcast:
     contact: Observation
     contacts: FirstContacts
     draws: ObservedDraws
-    before: FollowedLanders
-    after: FollowedLanders
+    before: ContactLanders
+    after: ContactLanders
 
     @classmethod
     def of(
@@ -239,8 +132,8 @@ class Nowcast:
         draws = observed_draws(contacts.outputs, contact.outputs, contact.errors, possible, contacts.lander)
         every = np.linspace(0, len(contacts.lander) - 1, min(followed, len(contacts.lander))).astype(np.int64)
         nothing = replace(contact, outputs={}, errors={})
-        before = FollowedLanders.of(contacts, every, nothing, "before the first contact")
-        after = FollowedLanders.of(contacts, draws.taken(followed, 1), contact, "after the first contact")
+        before = ContactLanders.of(contacts, every, nothing, "before the first contact")
+        after = ContactLanders.of(contacts, draws.taken(followed, 1), contact, "after the first contact")
         return cls(study, contact, contacts, draws, before, after)
 
     def values(self, name: str) -> Array:
@@ -341,11 +234,10 @@ class Nowcast:
         own = alike.weights > 1e-6 * alike.weights.max()
         if alike.effective_count < FEWEST_JOURNEYS or len(np.unique(table.bed[own])) < 2:
             return {}
+        bed, weights, faces = table.bed[own], alike.weights[own], table.face[own]
         return {
-            face: _listed(
-                share_estimate((table.face == face)[own].astype(float), table.bed[own], weights=alike.weights[own]).share
-            )
-            for face in sorted(set(table.face[own]))
+            face: _listed(share_estimate((faces == face).astype(float), bed, weights=weights).share)
+            for face in sorted(set(faces.tolist()))
         }
 
     def content(self) -> dict[str, Any]:
@@ -369,6 +261,16 @@ class Nowcast:
             "rest": self.rest(),
         }
         return {"statement": statement(found), **found}
+
+
+def is_first_contact(folder: Path, observation: Path) -> bool:
+    """Whether a file is a nowcast's: a record, or one bounce of a study of journeys to rest that has their emulator."""
+    if is_record(observation):
+        return True
+    if not (folder / TOUCHDOWN_EMULATOR_FILE).is_file() or len(read_bounces(observation)) > 1:
+        return False
+    study, content = FinishedFolder(folder).source().study, FinishedFolder(folder).read_json(TOUCHDOWN_EMULATOR_FILE)
+    return bool(study.journey.count) and study.journey.touchdowns is None and why_no_emulator(content) is None
 
 
 def _listed(one: Estimate) -> list[float | None]:

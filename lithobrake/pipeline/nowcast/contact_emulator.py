@@ -26,7 +26,6 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.smallbody.touchdown import Answers, ImpactStates
 from lithobrake.vocabulary.array_types import Array, Integers
 from lithobrake.vocabulary.constants import REFIT_COUNT
-from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 from lithobrake.vocabulary.quantities import SPIN as SPIN_IN
@@ -77,7 +76,10 @@ def contact_emulator(design: DrawnDesign, folder: StudyFolder, observed: Collect
         return whole
 
     lower = of_all(runs.lower, runs.lower[0])
-    lower[:, [runs.output_names.index(name) for name in modelled if (runs.y[:, runs.output_names.index(name)] > 0.0).all()]] = 0.0
+    lower[
+        :,
+        [runs.output_names.index(name) for name in modelled if (runs.y[:, runs.output_names.index(name)] > 0.0).all()],
+    ] = 0.0
     model = emulator.fit(
         runs.inputs,
         runs.x,
