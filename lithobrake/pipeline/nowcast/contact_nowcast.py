@@ -15,6 +15,7 @@ from lithobrake.pipeline.answer.dispersion_statistics import place_ellipses
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.mean_miss import offsets
+from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.inferred_study import DRAWN, read_bounces
 from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
@@ -69,11 +70,15 @@ class NowcastStudy:
                 "journey.touchdowns out and run the study again"
             )
         if not (path / TOUCHDOWN_EMULATOR_FILE).is_file():
-            raise ValueError(f"{path} has no {TOUCHDOWN_EMULATOR_FILE}: the study is not finished; {REMEDY}")
+            asks = "is not finished" if study.journey.emulated_count else "has journey.emulated_count = 0; raise it"
+            raise ValueError(f"{path} has no {TOUCHDOWN_EMULATOR_FILE}: the study {asks}; {REMEDY}")
         if why := why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE)):
             raise ValueError(f"{path} tells nothing of a first contact. {why} Raise journey.count and run it again.")
         if study.delivery is not None and study.delivery.states is not None:
             raise ValueError(f"{path} delivers landers by a file of states; allowed: a delivery that is drawn")
+        # As of an emulator of first touchdowns: a Python function that made them leaves no beds.
+        if not all((folder / name).is_file() for name in bed_files(study)):
+            study = study.with_function("of the folder's runs")
         return cls(folder, DrawnDesign(study))
 
     def nowcast(self, observation: Path) -> "Nowcast":

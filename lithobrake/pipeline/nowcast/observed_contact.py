@@ -12,6 +12,7 @@ from lithobrake.files.reading import CsvTable, DamagedFileError, read_table
 from lithobrake.pipeline.inferred_study import read_bounces
 from lithobrake.study.units import conversion
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.outcomes import TouchdownOutcome
 
 TIME, ACCELERATION, RATE = "time", "acceleration", "angular_rate"
 # Columns of a record with their units.
@@ -24,6 +25,8 @@ FEWEST_SAMPLES = 5
 GAP = 3.0
 # A record of zeros has no contact.
 LEAST_PEAK = 1e-9
+# Other outcomes are those of a simulation alone.
+OUTCOMES = (TouchdownOutcome.CLEAR, TouchdownOutcome.CAPTURED)
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,9 @@ def checked_contact(contact: Observation, bounds: Mapping[str, tuple[float, floa
     for name, error in contact.errors.items():
         if name not in contact.outputs or not 0.0 <= error < np.inf:
             raise ValueError(f"{where} has {error:g} for error:{name}; allowed: 0 or more, of what was observed")
-    if contact.outcome not in (None, "clear") and contact.outputs:
+    if contact.outcome not in (None, *OUTCOMES):
+        raise ValueError(f"{where} has the outcome {contact.outcome}; allowed: {', '.join(OUTCOMES)}")
+    if contact.outcome == TouchdownOutcome.CAPTURED and contact.outputs:
         raise ValueError(
             f"{where} has the outcome {contact.outcome} and {', '.join(contact.outputs)}; allowed: outputs of a lander "
             "that left the surface; leave them out"
