@@ -1,13 +1,14 @@
 """How often intervals of a nowcast hold the ground and the place of rest of grounds that its emulator has not seen.
 
-    python benchmarks/nowcast_coverage.py [--folder runs/quick] [--followed 100] [--most 48]
+    python benchmarks/nowcast_coverage.py [--folder runs/quick] [--followed 60] [--most 48]
 
 "held-out beds": of a finished study of journeys to rest, each first contact of its landers is observed, by the refits
 of the emulator that have not seen its bed, and on the grounds of the other beds. "synthetic": touchdowns by a function
 whose bed has an effect of its own, a study of 24 grounds with four journeys on each; observed are the landers of
 another study, with another seed, so on other grounds. Quantities are held where they lie within their 90 % interval;
 the rest of one in two landers is looked at, of so many at most. Grounds are scored by the logarithm of the probability
-of the true kind, before and after. Without --folder: synthetic alone.
+of the true kind, before and after. With --folder: held-out beds of that study; without: synthetic. Rows of the other
+stay as they are.
 Writes results/nowcast_coverage.csv and .json.
 """
 
@@ -25,6 +26,7 @@ from harness import RESULTS, SCENARIOS, Row, command_line, study_tables, write_m
 import lithobrake
 from lithobrake.analysis import LEVEL, Observation
 from lithobrake.analysis.observed_draws import observed_draws, weighted_quantiles
+from lithobrake.files.reading import read_table
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.nowcast.contact_emulator import FirstContacts, contact_emulator
 from lithobrake.pipeline.nowcast.contact_landers import ENDS, ContactLanders
@@ -33,6 +35,7 @@ from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import FinishedFolder
 from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, JOURNEY_DESIGN
 
+TABLE = RESULTS / "nowcast_coverage.csv"
 SEEN = {"motion": ("speed_out", "elevation_out", "spin_out"), "record": ("contact_duration", "peak_acceleration")}
 # Of the standard deviation of an output over the runs.
 ERROR = 0.05
@@ -169,19 +172,20 @@ def synthetic(folder: Path) -> tuple[NowcastStudy, Truths]:
 
 
 def main() -> None:
-    given = command_line(__doc__, folder=Path(), followed=100, most=48, work=Path()).parse_args()
-    work = given.work if given.work.name else Path(tempfile.mkdtemp())
-    rows: list[Row] = []
-    settings = [("synthetic", *synthetic(work), False)]
+    given = command_line(__doc__, folder=Path(), followed=60, most=48).parse_args()
+    name = "held-out beds" if given.folder.name else "synthetic"
+    # The rows of the other studies stay.
+    rows = [row for row in read_table(TABLE, (), "").rows if row["study"] != name] if TABLE.is_file() else []
     if given.folder.name:
         study = NowcastStudy.open(given.folder)
-        settings.append(("held-out beds", study, Truths.of(study.folder), True))
-    for name, study, truths, is_own in settings:
-        for seen in SEEN:
-            rows += rows_of(name, seen, cases(study, truths, seen, given, is_own=is_own))
-            write_rows(RESULTS / "nowcast_coverage.csv", COLUMNS, rows)
-    command = f"benchmarks/nowcast_coverage.py --folder quick --followed {given.followed} --most {given.most}"
-    write_made(RESULTS / "nowcast_coverage.csv", command, level=LEVEL, copies=COPIES, error=ERROR)
+        truths = Truths.of(study.folder)
+    else:
+        study, truths = synthetic(Path(tempfile.mkdtemp()))
+    for seen in SEEN:
+        rows += rows_of(name, seen, cases(study, truths, seen, given, is_own=name != "synthetic"))
+        write_rows(TABLE, COLUMNS, rows)
+    command = f"benchmarks/nowcast_coverage.py{' --folder runs/quick' * (name != 'synthetic')} --most {given.most}"
+    write_made(TABLE, command, level=LEVEL, copies=COPIES, error=ERROR, followed=given.followed)
 
 
 if __name__ == "__main__":

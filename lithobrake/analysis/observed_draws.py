@@ -1,7 +1,7 @@
 """Draws of a stochastic model weighted by one observed run: what is likely, given what was seen, of all that they have.
 
 Each draw has everything that follows from it, so that one set of weights gives the posterior of causes and of ends.
-Source: [Beaumont-2002] (weights by a kernel about what was observed); [Hartig-2011] (draws of stochastic models).
+Source: [Beaumont-2002] (weights by a kernel about what was observed).
 """
 
 from collections.abc import Mapping, Sequence
