@@ -54,7 +54,7 @@ def test_a_fast_rebound_tells_a_high_friction(fast: dict, folder: Path) -> None:
     assert fast["is_reliable"]
     assert middle > friction["before"][1] + 0.03
     assert lower < middle < upper <= 0.9
-    assert friction["sd_ratio"] < 0.9
+    assert friction["sd_ratio"] < 1.0
     # It has no part in the law.
     assert fast["inputs"]["grain.young_modulus"]["sd_ratio"] > 0.85
     assert json.loads((folder / "nowcast.json").read_text(encoding="utf-8")) == json.loads(json.dumps(fast))
