@@ -1,6 +1,6 @@
 """First contacts of a study's landers, many more than it simulated: all numbers that a lander could have observed."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
@@ -115,10 +115,8 @@ class FirstContacts:
     beyond: np.ndarray
 
     @classmethod
-    def drawn(
-        cls, emulator: TouchdownEmulator, begin: Arrivals, copies: int, refits: Sequence[int] | None = None
-    ) -> "FirstContacts":
-        """So many contacts of each lander, by one refit after the other; refits: those to draw from, None for all."""
+    def drawn(cls, emulator: TouchdownEmulator, begin: Arrivals, copies: int) -> "FirstContacts":
+        """So many contacts of each lander, by one refit after the other."""
         design, count = emulator.design, len(begin.rows)
         asked = AskedTouchdowns(*(getattr(emulator, one.name) for one in fields(emulator)))
         impacts = StudyLanders.of(design, begin).impacts(np.arange(count))
@@ -126,8 +124,7 @@ class FirstContacts:
         inputs, spin = asked.asked[0]
         beyond = emulator.beyond(inputs)
         lander = np.repeat(np.flatnonzero(beyond == ""), copies)
-        own = np.arange(len(emulator.refits)) if refits is None else np.array(refits)
-        refit = own[np.arange(len(lander)) % len(own)]
+        refit = np.arange(len(lander)) % len(emulator.refits)
         at = {name: inputs[name] for name in emulator.inputs}
         if IMPACT_SPEED in at:
             at[IMPACT_SPEED] = np.maximum(at[IMPACT_SPEED], emulator.ranges[IMPACT_SPEED][0])
@@ -137,9 +134,8 @@ class FirstContacts:
         names = emulator.refits[0].output_names
         outputs = {name: np.full(len(lander), np.nan) for name in names}
         outcome, axis = np.full(len(lander), "", dtype="<U24"), np.zeros((len(lander), 3))
-        for number in own.tolist():
+        for number, model in enumerate(emulator.refits):
             which = np.flatnonzero(refit == number)
-            model = emulator.refits[number]
             drawn = DrawnLandings.of(model, x[lander[which]], bound.at(lander[which]), seed + number)
             outcome[which] = np.array(model.outcome_names)[drawn.outcome]
             for name in names:

@@ -118,27 +118,23 @@ class Nowcast:
         emulator: TouchdownEmulator,
         contact: Observation,
         where: str,
-        begin: Arrivals | None = None,
-        refits: Sequence[int] | None = None,
-        followed: int = FOLLOWED,
     ) -> "Nowcast":
-        """Weigh first contacts by an observed one, and follow so many landers from those that are likely.
+        """Weigh first contacts by an observed one, and follow landers from those that are likely.
 
-        begin: the landers; None: as the study draws them. refits: of the emulator, None for all. where: the file of
-        the contact, for messages.
+        where: the file of the contact, for messages.
         """
-        begin = with_known(study.arrivals() if begin is None else begin, contact.known, where)
-        contacts = FirstContacts.drawn(emulator, begin, COPIES, refits)
+        begin = with_known(study.arrivals(), contact.known, where)
+        contacts = FirstContacts.drawn(emulator, begin, COPIES)
         if not len(contacts.lander):
             name = contacts.beyond[0]
             low, high = emulator.ranges[name]
             raise ValueError(f"{where}: {name} lies outside what the study simulated; allowed: {low:.4g} to {high:.4g}")
         possible = contacts.ended_as(contact.outcome)
         draws = observed_draws(contacts.outputs, contact.outputs, contact.errors, possible, contacts.lander)
-        every = np.linspace(0, len(contacts.lander) - 1, min(followed, len(contacts.lander))).astype(np.int64)
+        every = np.linspace(0, len(contacts.lander) - 1, min(FOLLOWED, len(contacts.lander))).astype(np.int64)
         nothing = replace(contact, outputs={}, errors={})
         before = ContactLanders.of(contacts, every, nothing, "before the first contact")
-        after = ContactLanders.of(contacts, draws.taken(followed, 1), contact, "after the first contact")
+        after = ContactLanders.of(contacts, draws.taken(FOLLOWED, 1), contact, "after the first contact")
         return cls(study, contact, contacts, draws, before, after)
 
     def values(self, name: str) -> Array:
