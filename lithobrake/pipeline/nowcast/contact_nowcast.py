@@ -1,6 +1,5 @@
 """From a first contact that was observed to the ground under it and the place of rest, by landings made before."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
