@@ -199,13 +199,25 @@ def infer(
     bounce: Annotated[
         Path | None,
         typer.Option(
-            "--bounce", metavar="FILE", help="Observed bounces, a CSV file. If omitted, report identifiability only."
+            "--bounce",
+            metavar="FILE",
+            help="Observed bounces, or the record of a first contact, a CSV file. If omitted, report identifiability.",
         ),
     ] = None,
 ) -> None:
-    """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png."""
-    from lithobrake.pipeline import InferredStudy, infer_study
+    """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png.
 
+    In a study of journeys to rest a first contact also tells the ground and the place of rest (nowcast.json).
+    """
+    from lithobrake.pipeline import InferredStudy, infer_study, is_first_contact, nowcast_study
+
+    if bounce is not None and is_first_contact(folder, bounce):
+        with arguments.shown_progress("inference") as progress:
+            progress(0.0, "nowcast")
+            said = nowcast_study(folder, bounce)["statement"]
+        written = ", ".join(str(folder / f"nowcast.{kind}") for kind in ("json", "csv", "png"))
+        arguments.tell([*said, f"Nowcast: {written}"])
+        return
     study = InferredStudy.open(folder)
     with arguments.shown_progress("inference") as progress:
         progress(0.0, "identifiability")

@@ -33,6 +33,9 @@ from .inferred_study import InferredStudy as InferredStudy
 from .inferred_study import infer_study as infer_study
 from .job import Job as Job
 from .job import Stage as Stage
+from .nowcast.contact_nowcast import NowcastStudy as NowcastStudy
+from .nowcast.contact_nowcast import is_first_contact as is_first_contact
+from .nowcast.contact_nowcast import nowcast_study as nowcast_study
 from .outdated_files import make as make
 from .outdated_files import stage_keys as stage_keys
 from .planning.plan import Plan as Plan

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 
 # Columns of standard deviations begin so; those of words.
 ERROR, OUTCOME, BED = "error:", "outcome", "bed"
+# Size of the change of velocity in the touchdown, which follows from impact and rebound and of which a record tells.
+SPEED_CHANGE = "speed_change"
 POSTERIOR, PICTURE = "posterior.json", "posterior.png"
 # Points of the posterior that the file keeps and the picture draws.
 DRAWN = 2000
@@ -56,7 +58,7 @@ def read_bounces(path: str | os.PathLike[str]) -> list[analysis.Observation]:
 
 def _factor(path: str | os.PathLike[str], name: str, unit: str) -> float:
     """What the numbers of a column are multiplied by, to be in the unit of the study."""
-    own = (run_units() | {OUTCOME: PURE, BED: PURE}).get(name.removeprefix(ERROR))
+    own = (run_units() | {OUTCOME: PURE, BED: PURE, SPEED_CHANGE: "m/s"}).get(name.removeprefix(ERROR))
     if own is None:
         # The emulator refuses the name.
         return 1.0
@@ -147,7 +149,8 @@ class InferredStudy:
         study = with_site_gravity(source.study)
         if study.ground is not None:
             raise ValueError(
-                f"{path} has [ground], and bounces tell the soil of one ground; infer from a study of one ground"
+                f"{path} has [ground], and bounces tell the soil of one ground; infer from a study of one ground, or "
+                "give a first contact, one row, to a study of journeys to rest"
             )
         # The file does not say that a Python function made the touchdowns; then there are no beds.
         if not all((folder / name).is_file() for name in bed_files(study)):
