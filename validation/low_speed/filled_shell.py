@@ -24,7 +24,7 @@ from result_rows import Row, note, options_of, read_rows
 
 HERE = Path(__file__).parent
 NAME = "filled_shell.csv"
-SIDE, WALL, GRAIN = 0.1, 0.005, 0.01  # m: outer side, thickness of a plate, diameter of a grain
+SIDE, WALL, GRAIN = 0.1, 0.005, 0.015  # m: outer side, thickness of a plate, diameter of a grain
 INSIDE = SIDE - 2.0 * WALL
 SHELL_MASS = 0.3  # kg
 PACKED = 0.6  # of the space that settled grains take, they fill
@@ -104,9 +104,9 @@ def lying(one: Setting, attitude: Rotation, generator: np.random.Generator) -> n
             normal = -sign * np.eye(3)[other]
             world.add_plane(tuple(-0.5 * INSIDE * normal), tuple(normal), stuff)
     world.drag = math.sqrt(SETTLED / GRAIN) / 3.0
-    while world.time < 40.0 * math.sqrt(INSIDE / SETTLED):
+    while world.time < 15.0 * math.sqrt(INSIDE / SETTLED):
         world.run_locally(math.sqrt(INSIDE / SETTLED), STEPS)
-        if np.abs(world.velocity).max() < 1e-3 * math.sqrt(SETTLED * GRAIN):
+        if np.abs(world.velocity).max() < 1e-2 * math.sqrt(SETTLED * GRAIN):
             break
     return world.position
 
