@@ -24,10 +24,10 @@ from result_rows import Row, note, options_of, read_rows
 
 HERE = Path(__file__).parent
 NAME = "filled_shell.csv"
-SIDE, WALL, GRAIN = 0.1, 0.005, 0.015  # m: outer side, thickness of a plate, diameter of a grain
+SIDE, WALL, GRAIN = 0.1, 0.005, 0.014  # m: outer side, thickness of a plate, diameter of a grain
 INSIDE = SIDE - 2.0 * WALL
 SHELL_MASS = 0.3  # kg
-PACKED = 0.6  # of the space that settled grains take, they fill
+PACKED = 0.5  # of the space that so few settled grains take, they fill
 SKIN = Material(young_modulus=1e6, poisson_ratio=0.3, restitution=0.7, friction=0.5, density=1000.0)
 SETTLED = 1.0  # m/s2 under which grains come to lie; the bounce itself is too short for gravity to matter
 STEPS = 25.0  # of its own that each contact takes
@@ -85,24 +85,17 @@ def lying(one: Setting, attitude: Rotation, generator: np.random.Generator) -> n
     count = round(one.filling * PACKED * INSIDE**3 / (math.pi / 6.0 * GRAIN**3))
     if count == 0:
         return np.zeros((0, 3))
-    # A lattice is higher than the cube where it is nearly full: grains begin in a shaft that goes on upwards.
-    down, stuff = attitude.inv().apply([0.0, 0.0, -1.0]), stuff_of(one)
-    world = World(tuple(SETTLED * down))
-    axis = int(np.argmax(np.abs(down)))
-    up = -float(np.sign(down[axis]))
-    row, pitch = int(INSIDE / (1.02 * GRAIN)), INSIDE / int(INSIDE / (1.02 * GRAIN))
-    k = np.arange(count)
-    cells = np.stack([k % row, k // row % row, k // row**2], axis=1)
-    place = np.empty((count, 3))
-    others = [other for other in range(3) if other != axis]
-    place[:, others] = (cells[:, :2] + 0.5) * pitch - 0.5 * INSIDE
-    place[:, axis] = up * ((cells[:, 2] + 0.5) * pitch - 0.5 * INSIDE)
+    row, stuff = int(INSIDE / (1.02 * GRAIN)), stuff_of(one)
+    if count > row**3:
+        raise ValueError(f"filling {one.filling:g} asks for {count} grains; the shell takes {row**3}: choose less")
+    pitch, world = INSIDE / row, World(tuple(SETTLED * attitude.inv().apply([0.0, 0.0, -1.0])))
+    cells = generator.permutation(row**3)[:count]
+    place = (np.stack([cells % row, cells // row % row, cells // row**2], axis=1) + 0.5) * pitch - 0.5 * INSIDE
     place += 0.5 * (pitch - GRAIN) * generator.uniform(-1.0, 1.0, place.shape)
     world.add_bodies([Sphere(0.5 * GRAIN)] * count, stuff, place, np.tile([1.0, 0.0, 0.0, 0.0], (count, 1)))
-    for other, sign in itertools.product(range(3), (-1.0, 1.0)):
-        if (other, sign) != (axis, up):
-            normal = -sign * np.eye(3)[other]
-            world.add_plane(tuple(-0.5 * INSIDE * normal), tuple(normal), stuff)
+    for axis, sign in itertools.product(range(3), (-1.0, 1.0)):
+        normal = -sign * np.eye(3)[axis]
+        world.add_plane(tuple(-0.5 * INSIDE * normal), tuple(normal), stuff)
     world.drag = math.sqrt(SETTLED / GRAIN) / 3.0
     while world.time < 15.0 * math.sqrt(INSIDE / SETTLED):
         world.run_locally(math.sqrt(INSIDE / SETTLED), STEPS)

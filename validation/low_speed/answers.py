@@ -1,0 +1,174 @@
+"""What the tables of the low-speed cases say to each claim: our number, its error, and the cause where it disagrees."""
+
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
+from claims import Claim, claims_of
+from fits import NOT_SHOWN, column
+from plate_sinkage import bearing_capacity
+from rebounds_part import rebounds
+from result_rows import Row, read_rows
+
+HERE = Path(__file__).parent
+
+
+class Found(NamedTuple):
+    """Our number and its standard error, NaN where it has none."""
+
+    value: float
+    error: float = math.nan
+
+
+class Answer(NamedTuple):
+    """A claim beside what was found."""
+
+    claim: Claim
+    found: Found
+    cause: str
+
+    @property
+    def agrees(self) -> bool:
+        """Whether our number lies within the tolerance."""
+        return self.claim.low <= self.found.value <= self.claim.high
+
+
+def rows_of(name: str) -> list[Row]:
+    return read_rows(HERE / f"{name}.csv")
+
+
+def those(rows: list[Row], **values: object) -> list[Row]:
+    """Return the rows with these values in these columns."""
+    return [row for row in rows if all(row[key] == value for key, value in values.items())]
+
+
+def mean_and_error(values: np.ndarray) -> Found:
+    """Return the mean and its standard error."""
+    return Found(float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(values))))
+
+
+def fraction(count: int, total: int) -> Found:
+    """Return a fraction and its standard error, with a half more of either: none is certain."""
+    share = (count + 0.5) / (total + 1.0)
+    return Found(count / total, math.sqrt(share * (1.0 - share) / (total + 1.0)))
+
+
+def mascot() -> dict[str, Found]:
+    rows = rows_of("lander_on_beds")
+    ratio = {name: column(those(rows, setting=name), "ratio") for name in dict.fromkeys(row["setting"] for row in rows)}
+
+    def beside(name: str, other: str) -> Found:
+        """Return the mean of the differences of landings of one number: place and attitude are the same."""
+        return mean_and_error(ratio[name] - ratio[other])
+
+    noise, grains, surface = ratio["noise"], ratio["grains"], ratio["at the surface"]
+    spread = float(surface.std(ddof=1) - grains.std(ddof=1))
+    of_spread = math.hypot(*(one.std(ddof=1) / math.sqrt(2.0 * (len(one) - 1.0)) for one in (surface, grains)))
+    return {
+        "noise": Found(float(np.abs(noise - noise.mean()).max())),
+        "surface_mean": beside("at the surface", "grains"), "below_mean": beside("below the surface", "grains"),
+        "nearer": beside("at the surface", "below the surface"), "surface_scatter": Found(spread, of_spread),
+        "slope": beside("slope 20 deg", "grains"),
+    }  # fmt: skip
+
+
+def with_ejecta(rows: list[Row]) -> Found:
+    return fraction(sum(row["ejecta"] > 0 for row in rows), len(rows))
+
+
+def rebounding(rows: list[Row]) -> Found:
+    return fraction(rebounds(rows), len(rows))
+
+
+def gravities() -> dict[str, Found]:
+    rows = rows_of("same_soil_gravities")
+    reduced, micro = those(rows, share=1e-2), those(rows, share=1e-5)
+    fast = [column(those(part, speed=1.0), "ejecta_speed") for part in (micro, reduced)]
+    return {
+        "reduced_rebounds": rebounding(reduced), "reduced_ejecta": with_ejecta(those(reduced, speed=1.0)),
+        "micro_rebounds": rebounding(those(micro, speed=0.05)), "micro_quiet": with_ejecta(those(micro, speed=0.05)),
+        "micro_ejecta": with_ejecta([row for row in micro if row["speed"] >= 0.2]),
+        "ejecta_speed": Found(float(fast[0].mean() / fast[1].mean())),
+    }  # fmt: skip
+
+
+def shell() -> dict[str, Found]:
+    rows = rows_of("filled_shell")
+    lost = {name: column(those(rows, setting=name), "energy_lost") for name in {row["setting"] for row in rows}}
+    out = {name: column(those(rows, setting=name), "rebound_speed") for name in ("half full", "empty")}
+
+    def span(*names: str) -> float:
+        means = [float(lost[name].mean()) for name in ("half full", *names)]
+        return max(means) - min(means)
+
+    others = max(span("0.05 m/s", "0.2 m/s"), span("friction 0.2", "friction 0.9"),
+                 span("restitution 0.4", "restitution 0.9"))  # fmt: skip
+    return {
+        "lost": mean_and_error(lost["half full"]),
+        "against_empty": Found(float(out["half full"].mean() / out["empty"].mean())),
+        "filling": Found(span("filling 0.15", "filling 0.8") / others),
+    }  # fmt: skip
+
+
+def cohesion_of_dent(rows: list[Row], depth: float) -> float:
+    """Return the cohesion [Pa] at which the dent has a depth [m], between runs; 0 where grains without it stop sooner.
+
+    Between two runs depth is linear in cohesion. Infinite where even the strongest is pressed deeper.
+    """
+    ran = sorted(rows, key=lambda row: row["cohesion"])
+    deepest = column(ran, "deepest")
+    if deepest[0] <= depth:
+        return 0.0
+    for k in range(1, len(ran)):
+        if deepest[k] <= depth:
+            part = (deepest[k - 1] - depth) / (deepest[k - 1] - deepest[k])
+            return float(ran[k - 1]["cohesion"] + part * (ran[k]["cohesion"] - ran[k - 1]["cohesion"]))
+    return math.inf
+
+
+def philae() -> dict[str, Found]:
+    rows = [row for row in rows_of("philae_into_ice") if row["name"].endswith("Pa")]
+    nearest = min(rows, key=lambda row: abs(row["deepest"] - 0.25))
+    return {
+        "strength": Found(cohesion_of_dent(rows, 0.25)),
+        "time": Found(nearest["time_of_deepest"]),
+    }  # fmt: skip
+
+
+def plate() -> dict[str, Found]:
+    rows = rows_of("plate_sinkage")
+    kinds = {kind: [row for row in rows if row["name"].split(",")[0] == kind]
+             for kind in ("dry", "cohesive", "poured cohesive")}  # fmt: skip
+    deep = {kind: column(own, "pressure_60mm") for kind, own in kinds.items()}
+    slope = math.radians(float(np.mean([row["slope_deg"] for row in rows if row["name"].startswith("heap")])))
+    filled = {kind: float(column(own, "solid_fraction").mean()) for kind, own in kinds.items()}
+    bears = bearing_capacity(slope, 2600.0 * 9.81 * filled["dry"], 0.06, 0.35)
+    return {
+        "exponent": Found(float(column(kinds["dry"] + kinds["cohesive"], "exponent").mean())),
+        "closed_form": Found(float(deep["dry"].mean()) / bears),
+        "cohesion": Found(float(deep["cohesive"].mean() / deep["dry"].mean())),
+        "looser": Found(filled["poured cohesive"] - filled["dry"]),
+        "weaker": Found(float(deep["poured cohesive"].mean() / deep["cohesive"].mean())),
+    }  # fmt: skip
+
+
+CASES: dict[str, Callable[[], dict[str, Found]]] = {
+    "mascot": mascot, "gravities": gravities, "shell": shell, "philae": philae, "plate": plate,
+}  # fmt: skip
+# Causes of what disagrees, by case and key, with the simulations that show them.
+CAUSES: dict[tuple[str, str], str] = {}
+
+
+def answers_of(case: str) -> list[Answer]:
+    """Return the claims of a case beside what its table says, in their order."""
+    found, answers = CASES[case](), []
+    for claim in claims_of(case):
+        one = Answer(claim, found[claim.key], "")
+        cause = "" if one.agrees else CAUSES.get((case, claim.key), NOT_SHOWN)
+        answers.append(one._replace(cause=cause))
+    return answers
