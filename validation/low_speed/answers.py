@@ -140,14 +140,18 @@ def philae() -> dict[str, Found]:
     }  # fmt: skip
 
 
+def heap_slope_deg() -> float:
+    """Return the mean slope of the heaps of the grains under the plate [deg]."""
+    return float(np.mean([row["slope_deg"] for row in rows_of("plate_sinkage") if row["name"].startswith("heap")]))
+
+
 def plate() -> dict[str, Found]:
     rows = rows_of("plate_sinkage")
     kinds = {kind: [row for row in rows if row["name"].split(",")[0] == kind]
              for kind in ("dry", "cohesive", "poured cohesive")}  # fmt: skip
     deep = {kind: column(own, "pressure_60mm") for kind, own in kinds.items()}
-    slope = math.radians(float(np.mean([row["slope_deg"] for row in rows if row["name"].startswith("heap")])))
     filled = {kind: float(column(own, "solid_fraction").mean()) for kind, own in kinds.items()}
-    bears = bearing_capacity(slope, 2600.0 * 9.81 * filled["dry"], 0.06, 0.35)
+    bears = bearing_capacity(math.radians(heap_slope_deg()), 2600.0 * 9.81 * filled["dry"], 0.06, 0.35)
     return {
         "exponent": Found(float(column(kinds["dry"] + kinds["cohesive"], "exponent").mean())),
         "closed_form": Found(float(deep["dry"].mean()) / bears),

@@ -1,7 +1,7 @@
 """What the sources of the low-speed cases say, and from where to where our number agrees: set before the first run.
 
 Sources: [Thuillet-2021] (abstract, caption of Fig 8), [Brisset-2018] (abstract), [Wen-2025] (abstract),
-[ORourke-2020] (abstract), [PlateSinkage-2026] (the program and its comments), [AMR-2012] (abstract).
+[ORourke-2020] (abstract), [Negrut-2026] (the program and its comments), [Sinkage-2012] (abstract).
 """
 
 import math

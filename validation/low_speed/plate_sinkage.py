@@ -2,7 +2,7 @@
 
     python validation/low_speed/plate_sinkage.py --work FOLDER --out FOLDER [--names NAME ...]
 
-Plate, speed, depth and materials are those of [PlateSinkage-2026], whose grains are clumps of three spheres of 22 mm in
+Plate, speed, depth and materials are those of [Negrut-2026], whose grains are clumps of three spheres of 22 mm in
 a round bin; ours are spheres of 40 mm with rolling resistance, softer, on ground that repeats. Rows that stand in
 plate_sinkage.csv are not run again.
 """
