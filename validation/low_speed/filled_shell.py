@@ -42,6 +42,8 @@ class Setting:
     speed: float = 0.1  # m/s
     friction: float = 0.5  # of grains
     restitution: float = 0.7  # of grains
+    floats: bool = False  # grains are anywhere inside, as after a long fall, instead of at the bottom
+    young_modulus: float = 1e6  # Pa, of the shell
 
 
 HALF = Setting()
@@ -56,6 +58,9 @@ SETTINGS = {
     "friction 0.9": replace(HALF, friction=0.9),
     "restitution 0.4": replace(HALF, restitution=0.4),
     "restitution 0.9": replace(HALF, restitution=0.9),
+    "grains float": replace(HALF, floats=True),
+    "soft shell": replace(HALF, young_modulus=2e4),
+    "soft shell, empty": replace(HALF, young_modulus=2e4, filling=0.0),
 }
 
 
@@ -76,12 +81,19 @@ def inertia_of_shell() -> np.ndarray:
     return moment
 
 
+def skin_of(one: Setting) -> Material:
+    return replace(SKIN, young_modulus=one.young_modulus)
+
+
 def stuff_of(one: Setting) -> Material:
     return replace(SKIN, restitution=one.restitution, friction=one.friction, density=2500.0)
 
 
 def lying(one: Setting, attitude: Rotation, generator: np.random.Generator) -> np.ndarray:
-    """Return where grains lie in the frame of the shell [m], shape [count, 3], the shell turned by an attitude."""
+    """Return where grains lie in the frame of the shell [m], shape [count, 3], the shell turned by an attitude.
+
+    Raises ValueError where the shell takes fewer grains.
+    """
     count = round(one.filling * PACKED * INSIDE**3 / (math.pi / 6.0 * GRAIN**3))
     if count == 0:
         return np.zeros((0, 3))
@@ -93,6 +105,8 @@ def lying(one: Setting, attitude: Rotation, generator: np.random.Generator) -> n
     place = (np.stack([cells % row, cells // row % row, cells // row**2], axis=1) + 0.5) * pitch - 0.5 * INSIDE
     place += 0.5 * (pitch - GRAIN) * generator.uniform(-1.0, 1.0, place.shape)
     world.add_bodies([Sphere(0.5 * GRAIN)] * count, stuff, place, np.tile([1.0, 0.0, 0.0, 0.0], (count, 1)))
+    if one.floats:
+        return place
     for axis, sign in itertools.product(range(3), (-1.0, 1.0)):
         normal = -sign * np.eye(3)[axis]
         world.add_plane(tuple(-0.5 * INSIDE * normal), tuple(normal), stuff)
@@ -109,13 +123,13 @@ def bounced(name: str, number: int) -> Row:
     one, generator = SETTINGS[name], np.random.default_rng([11, number])
     start, attitude = time.process_time(), Rotation.from_quat(generator.normal(size=4))
     grains = lying(one, attitude, generator)
-    hulls = plates()
+    hulls, skin = plates(), skin_of(one)
     lowest = float(min(attitude.apply(hull.vertices)[:, 2].min() for hull in hulls))
     world, centre, fall = World(), np.array([0.0, 0.0, -lowest + 1e-4]), (0.0, 0.0, -one.speed)
-    world.add_plane((0, 0, 0), (0, 0, 1), SKIN)
+    world.add_plane((0, 0, 0), (0, 0, 1), skin)
     shell = world.add_body(
-        hulls[0], SKIN, tuple(centre), fall, quaternion(attitude), mass=SHELL_MASS, inertia=inertia_of_shell(),
-        centre_of_mass=np.zeros(3), parts=[Part(hull, SKIN) for hull in hulls[1:]],
+        hulls[0], skin, tuple(centre), fall, quaternion(attitude), mass=SHELL_MASS, inertia=inertia_of_shell(),
+        centre_of_mass=np.zeros(3), parts=[Part(hull, skin) for hull in hulls[1:]],
     )  # fmt: skip
     for place in centre + attitude.apply(grains) if len(grains) else ():
         world.add_body(Sphere(0.5 * GRAIN), stuff_of(one), tuple(place), fall)
