@@ -59,8 +59,8 @@ SETTINGS = {
     "restitution 0.4": replace(HALF, restitution=0.4),
     "restitution 0.9": replace(HALF, restitution=0.9),
     "grains float": replace(HALF, floats=True),
-    "soft shell": replace(HALF, young_modulus=2e4),
-    "soft shell, empty": replace(HALF, young_modulus=2e4, filling=0.0),
+    "soft shell": replace(HALF, young_modulus=1e5),
+    "soft shell, empty": replace(HALF, young_modulus=1e5, filling=0.0),
 }
 
 
