@@ -19,7 +19,7 @@ from scipy.spatial.transform import Rotation
 from lithobrake.dem import Box, Material
 from lithobrake.geometry.attitude import quaternion
 from lithobrake.geometry.bed_limits import BOULDER_REACH
-from lithobrake.touchdown import Bed, BedRecipe, GrainSizes, Lander, Landing, land, pour_bed
+from lithobrake.touchdown import Bed, BedRecipe, ContactModel, GrainSizes, Lander, Landing, land, pour_bed
 from lithobrake.touchdown.grains import Boulders
 
 sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
@@ -33,6 +33,7 @@ GRAIN, BOULDER, BEDS = 0.1, 0.5, 2  # m, m, number
 WIDTH = 2.0 * 1.05 * (BOULDER_REACH * BOULDER + REACH)  # m, after which the ground repeats
 # Depth of a boulder's top under the mean surface of the grains [m].
 COVERS = {"at the surface": 0.0, "below the surface": 0.1}
+CONTACT = ContactModel(held_speed=0.1)  # as for the landers of ../mascot
 NUDGE = 1e-7  # m
 TIME_LIMIT = 3600.0  # s
 ROCK = Material(density=2000.0, young_modulus=1.6e6, poisson_ratio=0.25, restitution=0.55, friction=0.7)
@@ -103,7 +104,7 @@ def landing_of(one: Setting, ground: Bed, number: int) -> Landing:
     return Landing(
         grain=ROCK, speed=one.speed, incidence=math.radians(one.incidence_deg), azimuth=azimuth,
         place=(float(place[0]), float(place[1])), orientation=quaternion(attitude), spin=(0.0, 0.0, 0.0),
-        gravity=(float(down[0]), float(down[1]), float(down[2])), time_limit=TIME_LIMIT,
+        gravity=(float(down[0]), float(down[1]), float(down[2])), time_limit=TIME_LIMIT, contact=CONTACT,
     )  # fmt: skip
 
 
