@@ -55,14 +55,13 @@ class Ice:
 
 ICE = Ice()
 NAMES = {
-    **{f"{pull:g} Pa": replace(ICE, cohesion=pull) for pull in (0.0, 10.0, 100.0, 3.0, 30.0)},
-    "0 Pa, filled 0.18": replace(ICE, filled=0.18),
-    "10 Pa, filled 0.18": replace(ICE, cohesion=10.0, filled=0.18),
+    **{f"{pull:g} Pa": replace(ICE, cohesion=pull) for pull in (0.0, 10.0, 100.0, 300.0, 1000.0)},
     "0 Pa, again": replace(ICE, seed=2),
-    "10 Pa, again": replace(ICE, cohesion=10.0, seed=2),
-    "0 Pa, light": replace(ICE, density=400.0),
-    "10 Pa, light": replace(ICE, cohesion=10.0, density=400.0),
-    "0 Pa, flat": replace(ICE, tilt_deg=0.0),
+    "100 Pa, again": replace(ICE, cohesion=100.0, seed=2),
+    "100 Pa, filled 0.18": replace(ICE, cohesion=100.0, filled=0.18),
+    "100 Pa, filled 0.32": replace(ICE, cohesion=100.0, filled=0.32),
+    "100 Pa, flat": replace(ICE, cohesion=100.0, tilt_deg=0.0),
+    "100 Pa, light": replace(ICE, cohesion=100.0, density=400.0),
 }
 
 

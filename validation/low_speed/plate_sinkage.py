@@ -20,7 +20,7 @@ from lithobrake.dem import Material, World
 sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
 from repose import angle_of_repose
 from result_rows import Row, note, options_of, read_rows
-from sphere_bed import POUR_STEPS, Beads, Floats, add_beads, bulk_density, column_tops, empty_world, kept, places_of
+from sphere_bed import Beads, Floats, add_beads, bulk_density, column_tops, empty_world, kept, places_of
 
 HERE = Path(__file__).parent
 NAME = "plate_sinkage.csv"
@@ -31,6 +31,7 @@ ACCELERATION = 200.0  # m/s2, the source's cohesion: a pull of so much times the
 DRY = Material(
     young_modulus=1e7, poisson_ratio=0.3, restitution=0.4, friction=0.5, density=2600.0, rolling_friction=0.1
 )
+PRESS_STEPS = 40.0  # in the shortest contact: damping in many contacts at once asks for more
 TICK = 1e-3  # s, between two moves of the plate
 AREA = 0.25 * math.pi * PLATE**2
 SHOWN = (0.005, 0.02, 0.04, 0.06)  # m
@@ -50,7 +51,7 @@ def beads(pulls: bool, seed: int) -> Beads:
     """Return what a bed follows from: three sizes, so that no crystal grows."""
     sizes = (0.9 * GRAIN, GRAIN, 1.1 * GRAIN)
     return Beads(
-        diameters=sizes, material=stuff(pulls), gravity=GRAVITY, width=WIDTH, depth=BED, seed=seed, least_steps=30.0
+        diameters=sizes, material=stuff(pulls), gravity=GRAVITY, width=WIDTH, depth=BED, seed=seed, least_steps=60.0
     )
 
 
@@ -61,7 +62,7 @@ def prepared(work: Path, poured: bool, pressed: bool, seed: int) -> World:
         return bed
     world = empty_world(beads(pressed, seed))
     add_beads(world, np.array([body.shape.bounding_radius for body in bed.bodies]), stuff(pressed), places_of(bed))
-    world.time_step = world.shortest_contact(0.3) / POUR_STEPS
+    world.time_step = world.shortest_contact(0.3) / PRESS_STEPS
     world.drag = math.sqrt(GRAVITY / GRAIN)
     world.run(duration=0.3)
     world.drag = 0.0
@@ -74,7 +75,7 @@ def pressed_in(world: World) -> Floats:
     The plate is a plane that meets the grains under its disc.
     """
     height = float(column_tops(world, 0.5 * PLATE, 0.1 * GRAIN).max()) + 1e-4
-    world.time_step = world.shortest_contact(0.3) / POUR_STEPS
+    world.time_step = world.shortest_contact(0.3) / PRESS_STEPS
     plate = world.add_plane((0, 0, height), (0, 0, -1), DRY, bodies=[])
     looks: list[tuple[float, float]] = []
     datum = math.nan

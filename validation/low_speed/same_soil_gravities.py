@@ -2,7 +2,7 @@
 
     python validation/low_speed/same_soil_gravities.py --work FOLDER --out FOLDER [--drops 2] [--shares 0.01 1e-5]
 
-The soil is the 4 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. Rows
+The soil is the 6 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. Rows
 that stand in same_soil_gravities.csv are not run again. Source: [Brisset-2018].
 """
 
@@ -15,13 +15,13 @@ from pathlib import Path
 sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
 import who_rebounds
 from result_rows import note, options_of, read_rows
-from who_rebounds import DIAMETER, EARTH, LUNAR, Kind
+from who_rebounds import DIAMETER, EARTH, PULLING
 
 HERE = Path(__file__).parent
 NAME = "same_soil_gravities.csv"
 SHARES = (1e-2, 1e-5, 1e-4, 1e-3)  # of Earth's gravity
 SPEEDS = (0.05, 0.2, 1.0)  # m/s
-SOIL = Kind(surface_energy=LUNAR, steps=40.0)
+SOIL = PULLING
 
 
 def froude(share: float, speed: float) -> float:
@@ -37,7 +37,7 @@ def main() -> None:
         if (share, speed, number) in ran:
             continue
         name = f"{share:g} g"
-        # Kinds of equal pour share one: the loose grains of "4 mm".
+        # Kinds of equal pour share one: the loose grains of "6 mm".
         who_rebounds.KINDS[name] = replace(SOIL, share=share)
         row = who_rebounds.drop(given.work, name, froude(share, speed), number)
         note(table, {"share": share, "speed": speed, **row})
