@@ -11,8 +11,6 @@ import numpy as np
 sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
 from claims import Claim, claims_of
 from fits import NOT_SHOWN, column
-from plate_sinkage import bearing_capacity
-from rebounds_part import rebounds
 from result_rows import Row, read_rows
 
 HERE = Path(__file__).parent
@@ -52,12 +50,6 @@ def mean_and_error(values: np.ndarray) -> Found:
     return Found(float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(values))))
 
 
-def fraction(count: int, total: int) -> Found:
-    """Return a fraction and its standard error, with a half more of either: none is certain."""
-    share = (count + 0.5) / (total + 1.0)
-    return Found(count / total, math.sqrt(share * (1.0 - share) / (total + 1.0)))
-
-
 def mascot() -> dict[str, Found]:
     rows = rows_of("lander_on_beds")
     ratio = {name: column(those(rows, setting=name), "ratio") for name in dict.fromkeys(row["setting"] for row in rows)}
@@ -74,26 +66,6 @@ def mascot() -> dict[str, Found]:
         "surface_mean": beside("at the surface", "grains"), "below_mean": beside("below the surface", "grains"),
         "nearer": beside("at the surface", "below the surface"), "surface_scatter": Found(spread, of_spread),
         "slope": beside("slope 20 deg", "grains"),
-    }  # fmt: skip
-
-
-def with_ejecta(rows: list[Row]) -> Found:
-    return fraction(sum(row["ejecta"] > 0 for row in rows), len(rows))
-
-
-def rebounding(rows: list[Row]) -> Found:
-    return fraction(rebounds(rows), len(rows))
-
-
-def gravities() -> dict[str, Found]:
-    rows = rows_of("same_soil_gravities")
-    reduced, micro = those(rows, share=1e-2), those(rows, share=1e-5)
-    fast = [column(those(part, speed=1.0), "ejecta_speed") for part in (micro, reduced)]
-    return {
-        "reduced_rebounds": rebounding(reduced), "reduced_ejecta": with_ejecta(those(reduced, speed=1.0)),
-        "micro_rebounds": rebounding(those(micro, speed=0.05)), "micro_quiet": with_ejecta(those(micro, speed=0.05)),
-        "micro_ejecta": with_ejecta([row for row in micro if row["speed"] >= 0.2]),
-        "ejecta_speed": Found(float(fast[0].mean() / fast[1].mean())),
     }  # fmt: skip
 
 
@@ -140,30 +112,7 @@ def philae() -> dict[str, Found]:
     }  # fmt: skip
 
 
-def heap_slope_deg() -> float:
-    """Return the mean slope of the heaps of the grains under the plate [deg]."""
-    return float(np.mean([row["slope_deg"] for row in rows_of("plate_sinkage") if row["name"].startswith("heap")]))
-
-
-def plate() -> dict[str, Found]:
-    rows = rows_of("plate_sinkage")
-    kinds = {kind: [row for row in rows if row["name"].split(",")[0] == kind]
-             for kind in ("dry", "cohesive", "poured cohesive")}  # fmt: skip
-    deep = {kind: column(own, "pressure_60mm") for kind, own in kinds.items()}
-    filled = {kind: float(column(own, "solid_fraction").mean()) for kind, own in kinds.items()}
-    bears = bearing_capacity(math.radians(heap_slope_deg()), 2600.0 * 9.81 * filled["dry"], 0.06, 0.35)
-    return {
-        "exponent": Found(float(column(kinds["dry"] + kinds["cohesive"], "exponent").mean())),
-        "closed_form": Found(float(deep["dry"].mean()) / bears),
-        "cohesion": Found(float(deep["cohesive"].mean() / deep["dry"].mean())),
-        "looser": Found(filled["poured cohesive"] - filled["dry"]),
-        "weaker": Found(float(deep["poured cohesive"].mean() / deep["cohesive"].mean())),
-    }  # fmt: skip
-
-
-CASES: dict[str, Callable[[], dict[str, Found]]] = {
-    "mascot": mascot, "gravities": gravities, "shell": shell, "philae": philae, "plate": plate,
-}  # fmt: skip
+CASES: dict[str, Callable[[], dict[str, Found]]] = {"mascot": mascot, "shell": shell, "philae": philae}
 # Causes of what disagrees, by case and key, with the simulations that show them.
 CAUSES: dict[tuple[str, str], str] = {}
 

@@ -1,6 +1,6 @@
 """How much energy does a shell lose in its first bounce on a hard plane, with grains inside and without?
 
-    python validation/low_speed/filled_shell.py --work FOLDER --out FOLDER [--drops 4] [--settings NAME ...]
+    python validation/low_speed/filled_shell.py --work FOLDER --out FOLDER [--drops 3] [--settings NAME ...]
 
 The shell is a rigid cube of six plates, the source's is flexible. Grains lie at its bottom before it strikes the plane.
 Rows that stand in filled_shell.csv are not run again. Source: [Wen-2025]; all sizes and materials are ours.
@@ -150,7 +150,7 @@ def attitude_of(world: World, body: int) -> Rotation:
 
 
 def main() -> None:
-    given = options_of(__doc__, HERE, drops=4, settings=tuple(SETTINGS))
+    given = options_of(__doc__, HERE, drops=3, settings=tuple(SETTINGS))
     ran = {(row["setting"], row["drop"]) for row in read_rows(given.out / NAME)}
     for number, name in itertools.product(range(given.drops), given.settings):
         if (name, number) not in ran:
