@@ -113,15 +113,25 @@ def philae() -> dict[str, Found]:
 
 
 CASES: dict[str, Callable[[], dict[str, Found]]] = {"mascot": mascot, "shell": shell, "philae": philae}
-# Causes of what disagrees, by case and key, with the simulations that show them.
-CAUSES: dict[tuple[str, str], str] = {}
+
+
+def causes() -> dict[tuple[str, str], str]:
+    """Causes of what disagrees, by case and key: what brings it within its tolerance, and the number then."""
+    rows = rows_of("filled_shell")
+    floating = those(rows, setting="grains float")
+    # The same attitudes without grains.
+    empty = [row for row in those(rows, setting="empty") if row["drop"] in column(floating, "drop")]
+    lost = float(column(floating, "energy_lost").mean())
+    out = float(column(floating, "rebound_speed").mean() / column(empty, "rebound_speed").mean())
+    words = "grains that float inside when the shell strikes"
+    return {("shell", "lost"): f"{words}: {lost:.3g}", ("shell", "against_empty"): f"{words}: {out:.3g}"}
 
 
 def answers_of(case: str) -> list[Answer]:
     """Return the claims of a case beside what its table says, in their order."""
-    found, answers = CASES[case](), []
+    found, shown, answers = CASES[case](), causes(), []
     for claim in claims_of(case):
         one = Answer(claim, found[claim.key], "")
-        cause = "" if one.agrees else CAUSES.get((case, claim.key), NOT_SHOWN)
+        cause = "" if one.agrees else shown.get((case, claim.key), NOT_SHOWN)
         answers.append(one._replace(cause=cause))
     return answers

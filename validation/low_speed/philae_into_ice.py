@@ -60,6 +60,8 @@ NAMES = {
     "100 Pa, again": replace(ICE, cohesion=100.0, seed=2),
     "100 Pa, filled 0.18": replace(ICE, cohesion=100.0, filled=0.18),
     "100 Pa, filled 0.32": replace(ICE, cohesion=100.0, filled=0.32),
+    "10 Pa, filled 0.32": replace(ICE, cohesion=10.0, filled=0.32),
+    "0 Pa, filled 0.32": replace(ICE, filled=0.32),
     "100 Pa, flat": replace(ICE, cohesion=100.0, tilt_deg=0.0),
     "100 Pa, light": replace(ICE, cohesion=100.0, density=400.0),
 }
