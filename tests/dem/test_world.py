@@ -329,6 +329,20 @@ def pair(spheres: bool, middle: np.ndarray, period: tuple[float, float] | None) 
     return world
 
 
+def test_a_large_ball_over_the_edge_meets_a_small_one_with_another_between() -> None:
+    """Two small balls beside a large one that the fold takes to the other side; it touches the first alone.
+
+    The second begins farther along x than the first ends, and before the image of the large one in a list by x.
+    """
+    world = World(time_step=1e-5, period=(0.06, 0.06))
+    for radius, place in ((0.003, (0.0204, 0.0, 0.0)), (0.003, (0.0298, 0.02, 0.0)), (0.01, (0.0301, 0.0, 0.0))):
+        world.add_body(Sphere(radius), ROCK, place)
+    contacts = world.contacts()
+    assert [tuple(sorted((int(a), int(b)))) for a, b in zip(contacts["body_a"], contacts["body_b"], strict=True)] == [
+        (0, 2)
+    ]
+
+
 def gas(count: int = 30, friction: float = 0.5) -> World:
     """Hulls and spheres that fly through each other between a smooth floor and a smooth lid, with no one speed."""
     generator = np.random.default_rng(7)

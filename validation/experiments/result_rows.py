@@ -17,11 +17,11 @@ HERE = Path(__file__).parent
 FIGURES = PAGES / "experiments"
 
 
-def options_of(doc: str | None, **options: Any) -> argparse.Namespace:
-    """Return the options of a script, with the folders --work, made if it is not there, and --out."""
+def options_of(doc: str | None, here: Path = HERE, **options: Any) -> argparse.Namespace:
+    """Return the options of a script in a folder, with the folders --work, made if it is not there, and --out."""
     parser = harness.command_line(doc, **options)
     parser.add_argument("--work", type=Path, required=True, help="folder for beds and paths, made if it is not there")
-    parser.add_argument("--out", type=Path, default=HERE, help="folder of the table")
+    parser.add_argument("--out", type=Path, default=here, help="folder of the table")
     given = parser.parse_args()
     for folder in (given.work, given.out):
         folder.mkdir(parents=True, exist_ok=True)
@@ -46,6 +46,7 @@ def note(table: Path, row: Row) -> None:
     print(row, flush=True)
     rows = read_rows(table)
     cost = round(sum(float(row.get("cpu_s", 0.0)) for row in rows), 1)
-    command = f"validation/experiments/{Path(sys.argv[0]).name} --work FOLDER --out FOLDER"
+    script = Path(sys.argv[0]).resolve()
+    command = f"validation/{script.parent.name}/{script.name} --work FOLDER --out FOLDER"
     document = {"table": table.name, **origin(command), "rows": len(rows), "cpu_s_of_rows": cost}
     write_document(table.with_suffix(".json"), document)

@@ -23,7 +23,7 @@ def sweep(
 ) -> int:
     """Find pairs of bounding spheres that meet, sweeping along x; write as many as fit and return how many there are.
 
-    position is folded; order [body_count] sorts low = x - reach; reach is the bounding radius and half the skin. Where
+    low = x - reach is folded; order [body_count] sorts it; reach is the bounding radius and half the skin. Where
     the world repeats, the sweep goes on from the last to the images of those before.
     Writes to first and second.
     """
@@ -85,7 +85,9 @@ class Neighbours(NamedTuple):
 def neighbouring_pairs(bodies: Bodies, cores: Cores, planes: Planes, scratch: Scratch, skin: float) -> Neighbours:
     """Return all neighbouring pairs, ordered; plane k stands as second = -1 - k."""
     reach = bodies.bounding_radius + 0.5 * skin
-    position = folded(bodies.position, bodies.period)
+    # Folded by their lower ends: every image then begins after all bodies, however large these are beside each other.
+    lower = bodies.position - np.column_stack([reach, np.zeros((len(reach), 2))])
+    position = bodies.position + (folded(lower, bodies.period) - lower)
     low = position[:, 0] - reach
     order = np.argsort(low, kind="stable")
     # In a poured bed some 11 pairs of bounding spheres a grain meet.
