@@ -183,17 +183,20 @@ def kernels_of(model: Parts) -> Kernels:
 def observed_density(
     model: Parts,
     observed: Mapping[str, float],
-    matrix: Array,
+    at: tuple[Array, Array],
     errors: Mapping[str, float],
     outcome: str | None,
     bounds: tuple[ArrayLike | None, ArrayLike | None],
     bed: BedEffect,
 ) -> tuple[Array, BedEffect]:
-    """Logarithm of the density of an observed run at terms [point_count, term_count], and what it says of its bed.
+    """Logarithm of the density of an observed run at points, and what it says of its bed.
+
+    at: points [point_count, input_count] in physical units, and the emulator's terms there [point_count, term_count].
 
     observed, errors, outcome, bounds (lower and upper): as in `Emulator.log_density`. bed: its effect as far as other
     runs show it. An outcome without outputs has its chance alone, and says nothing of the bed.
     """
+    points, matrix = at
     linear = matrix[:, : len(model.runs.inputs)]
     ended = _checked_outcome(model, observed, errors, outcome)
     chance = np.log(np.maximum(model.classes.chances(matrix)[:, ended], np.finfo(float).tiny))
@@ -209,6 +212,13 @@ def observed_density(
     location, scale = (one[:, places] for one in model.law.at(matrix))
     # What lies beyond a bound at some point cannot have come from there.
     inside = possible & np.all(np.isfinite(coordinate), axis=1)
+    steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1)
+    if model.expansion is not None:
+        normals = model.expansion.normals(points)
+        blurred = np.hypot(normals.deviation, slope * list(errors.values()) if errors else 0.0)
+        parts = replace(normals, deviation=np.where(inside[:, None], blurred, 1.0))
+        found = parts.log_density(np.where(inside, coordinate[:, 0], 0.0))
+        return np.where(inside, chance + found + steepness, -np.inf), bed
     kernels = kernels_of(model)
     standard = (np.where(inside[:, None], coordinate, 0.0) - location) / scale
     blur = slope * [errors.get(name, 0.0) for name in observed] / scale
@@ -221,7 +231,7 @@ def observed_density(
             f"{', '.join(observed)} have no density together: in the runs some of them follow from the others to "
             "the last digit; leave such outputs out, or give each an error"
         ) from error
-    steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1) - np.log(scale).sum(axis=1)
+    steepness -= np.log(scale).sum(axis=1)
     density: Array = np.where(inside, chance + found + steepness, -np.inf)
     return density, bed.given(kernels.root, places, left, blur)
 
