@@ -32,7 +32,7 @@ TOLERANCE, OF_SCORED = 1e-7, 1e-5
 MOST_STEPS = 300
 HIGHEST_DEGREE = 5
 # With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
-RUNS_PER_TERM = 5
+RUNS_PER_TERM = 10
 # Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
 NOISE_SHARES = (0.95, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2)
 FOLDS = 5

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lithobrake import emulator
 from lithobrake.chaos import (
     Normal,
     Uniform,
@@ -22,7 +23,6 @@ from lithobrake.chaos import (
     sobol_intervals,
     sobol_sequence,
 )
-from lithobrake import emulator
 
 CUBE = {name: Uniform(-1.0, 1.0) for name in "abc"}
 # y = a + b / 2 + a c: variances 1/3, 1/12, 1/9.
