@@ -35,6 +35,8 @@ HIGHEST_DEGREE = 5
 RUNS_PER_TERM = 10
 # Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
 NOISE_SHARES = (0.95, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2)
+# Of the noise of two branches towards that of most likelihood, at each share.
+NOISE_STEPS = 3
 FOLDS = 5
 
 
@@ -190,7 +192,17 @@ class LatentProblem:
             # What was followed may have gone up the lesser of two peaks, which the likelihood shows at less noise.
             peaks = [self.climbed(start, noise, tolerance) for start in starts]
             found = [min(peaks, key=lambda one: self.loss(one, noise)[0])]
-            yield noise, found[0]
+            yield self._settled(noise, found[0], tolerance) if self.terms.latent == BRANCHES else (noise, found[0])
+
+    def _settled(self, noise: float, parameters: Array, tolerance: float) -> tuple[float, Array]:
+        """Noise and parameters nearer to those of most likelihood, which two branches of one noise have; beside a
+        normal latent variable less noise is always likelier, until it follows single runs.
+        """
+        for _ in range(NOISE_STEPS):
+            _, shares, away = self.log_densities(parameters, noise)
+            noise *= float(np.sqrt(self.weights @ (shares * away**2).sum(axis=1) / self.weights.sum()))
+            parameters = self.climbed(parameters, noise, tolerance)
+        return noise, parameters
 
     @property
     def scatters(self) -> bool:

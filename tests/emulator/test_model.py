@@ -288,6 +288,11 @@ def branching(x: np.ndarray, z: np.ndarray) -> np.ndarray:
     return (1.5 + 0.5 * x[:, 0]) * np.sign(z) + 0.4 * stats.norm.ppf(np.modf(2.0 * stats.norm.cdf(z))[0])
 
 
+def crossing(x: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Two branches that cross in the middle, each with its own scatter."""
+    return 2.0 * x[:, 0] * np.sign(z) + 0.3 * stats.norm.ppf(np.modf(2.0 * stats.norm.cdf(z))[0])
+
+
 def price(x: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Geometric Brownian motion after a unit of time. Source: [Zhu-2023] (first example)."""
     return np.exp(x[:, 0] - 0.5 * x[:, 1] ** 2 + x[:, 1] * z)
@@ -312,7 +317,8 @@ FITS: dict[str, tuple[Any, Any, dict[str, Any]]] = {
     "line": (ONE_INPUT, runs_of(ONE_INPUT, line), FORM),
     "bounded": (ONE_INPUT, bounded_runs(), {"lower": 0.0, "upper": 0.4, **FORM}),
     "positive": (MARKET, runs_of(MARKET, price), {"lower": 0.0, **FORM}),
-    "branching": (ONE_INPUT, runs_of(ONE_INPUT, branching), {}),
+    "branching": (ONE_INPUT, runs_of(ONE_INPUT, branching), FORM),
+    "crossing": (ONE_INPUT, runs_of(ONE_INPUT, crossing), {}),
     "rows": (ONE_INPUT, bounded_runs(1), {"lower": 0.0, "upper": 0.4, "form": "rows"}),
 }
 POINTS = {name: np.atleast_2d([0.3] if name != "positive" else [0.05, 0.6]) for name in FITS}
@@ -412,13 +418,13 @@ def test_the_gradient_is_that_of_the_loss(latent: str, odds: int) -> None:
 
 
 def test_the_form_of_the_better_score_is_chosen_and_said() -> None:
-    branching = expand("branching")
-    assert branching.expansion is not None
-    assert branching.expansion.terms.latent == "branches"
-    assert "A stochastic expansion of degree" in branching.statement
-    assert branching.scores.energy < branching.scores.energy_of_rows
-    assert 0.85 < branching.scores.band_90[0] < 0.95
-    assert (branching.draw([[0.0]], 3).row == -1).all()
+    crossing = expand("crossing")
+    assert crossing.expansion is not None
+    assert crossing.expansion.terms.latent == "branches"
+    assert "A stochastic expansion of degree" in crossing.statement
+    assert crossing.scores.energy < crossing.scores.energy_of_rows
+    assert 0.85 < crossing.scores.band_90[0] < 0.95
+    assert (crossing.draw([[0.0]], 3).row == -1).all()
     assert (expand("rows").expansion, expand("rows").draw([[0.0]], 3).row.min() >= 0) == (None, True)
 
 
