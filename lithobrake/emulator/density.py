@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.emulator.law import log_row_weights, smoothing
+from lithobrake.emulator.stochastic_expansion import Normals
 from lithobrake.emulator.storage import Parts
 from lithobrake.emulator.training_runs import with_slope
 from lithobrake.vocabulary.array_types import Array
@@ -192,12 +193,10 @@ def observed_density(
     """Logarithm of the density of an observed run at points, and what it says of its bed.
 
     at: points [point_count, input_count] in physical units, and the emulator's terms there [point_count, term_count].
-
     observed, errors, outcome, bounds (lower and upper): as in `Emulator.log_density`. bed: its effect as far as other
     runs show it. An outcome without outputs has its chance alone, and says nothing of the bed.
     """
     points, matrix = at
-    linear = matrix[:, : len(model.runs.inputs)]
     ended = _checked_outcome(model, observed, errors, outcome)
     chance = np.log(np.maximum(model.classes.chances(matrix)[:, ended], np.finfo(float).tiny))
     if not observed:
@@ -209,20 +208,17 @@ def observed_density(
     bent_low, bent_high = model.runs.bending(low, high)
     coordinate, slope = with_slope(y, bent_low[:, columns], bent_high[:, columns])
     places = [model.runs.modelled.index(column) for column in columns]
-    location, scale = (one[:, places] for one in model.law.at(matrix))
     # What lies beyond a bound at some point cannot have come from there.
     inside = possible & np.all(np.isfinite(coordinate), axis=1)
     steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1)
+    coordinate, blur = np.where(inside[:, None], coordinate, 0.0), slope * [errors.get(name, 0.0) for name in observed]
     if model.expansion is not None:
-        normals = model.expansion.normals(points)
-        blurred = np.hypot(normals.deviation, slope * list(errors.values()) if errors else 0.0)
-        parts = replace(normals, deviation=np.where(inside[:, None], blurred, 1.0))
-        found = parts.log_density(np.where(inside, coordinate[:, 0], 0.0))
+        found = _by_expansion(model.expansion.normals(points), coordinate, blur)
         return np.where(inside, chance + found + steepness, -np.inf), bed
-    kernels = kernels_of(model)
-    standard = (np.where(inside[:, None], coordinate, 0.0) - location) / scale
-    blur = slope * [errors.get(name, 0.0) for name in observed] / scale
+    location, scale = (one[:, places] for one in model.law.at(matrix))
+    kernels, standard, blur = kernels_of(model), (coordinate - location) / scale, blur / scale
     left = standard - bed.mean @ kernels.root[places].T
+    linear = matrix[:, : len(model.runs.inputs)]
     chances = log_row_weights(linear, model.row_points, model.law.weights, model.choices.widths)
     try:
         found = kernels.log_density(places, left, blur, chances, bed.spread)
@@ -234,6 +230,11 @@ def observed_density(
     steepness -= np.log(scale).sum(axis=1)
     density: Array = np.where(inside, chance + found + steepness, -np.inf)
     return density, bed.given(kernels.root, places, left, blur)
+
+
+def _by_expansion(normals: Normals, coordinate: Array, blur: Array) -> Array:
+    """Logarithm of the density of a coordinate with errors of so many units, [point_count, 1] each, [point_count]."""
+    return replace(normals, deviation=np.hypot(normals.deviation, blur)).log_density(coordinate[:, 0])
 
 
 def _checked_outcome(

@@ -113,8 +113,7 @@ def parts_of(content: dict[str, Any]) -> Parts:
         float(content["class_inverse_penalty"]), None if rung is None else _ladder_from_json([rung], inputs)[0]
     )
     # Emulators from before there were expansions have rows, and no such key.
-    stored = content.get("expansion")
-    expansion = None if stored is None else _expansion_from_json(stored, runs)
+    expansion = _expansion_from_json(content.get("expansion"), runs)
     return Parts(runs, Terms(runs.inputs, indices), choices, class_choice, weights, law, classes, scores, expansion)
 
 
@@ -128,8 +127,10 @@ def _expansion_to_json(expansion: StochasticExpansion) -> dict[str, Any]:
     }
 
 
-def _expansion_from_json(content: dict[str, Any], runs: TrainingRuns) -> StochasticExpansion:
-    """An expansion; raises ValueError where it has none of the runs' inputs, or other parameters than terms."""
+def _expansion_from_json(content: dict[str, Any] | None, runs: TrainingRuns) -> StochasticExpansion | None:
+    """An expansion, where there is one; raises ValueError where it does not fit the runs, or itself."""
+    if content is None:
+        return None
     latent, noise, inputs = content["latent"], float(content["noise"]), len(runs.inputs)
     indices = storage.indices_from_json(content["multi_indices"], inputs + 1)
     odds = storage.indices_from_json(content["odds"], inputs) if latent == BRANCHES else np.empty((0, inputs), int)
