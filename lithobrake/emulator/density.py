@@ -205,8 +205,7 @@ def observed_density(
     columns = [model.runs.output_names.index(name) for name in observed]
     y = np.broadcast_to(list(observed.values()), (len(matrix), len(columns)))
     possible = np.all((y > low[:, columns]) & (y < high[:, columns]), axis=1)
-    bent_low, bent_high = model.runs.bending(low, high)
-    coordinate, slope = with_slope(y, bent_low[:, columns], bent_high[:, columns])
+    coordinate, slope = with_slope(y, *(bound[:, columns] for bound in model.runs.bending(low, high)))
     places = [model.runs.modelled.index(column) for column in columns]
     # What lies beyond a bound at some point cannot have come from there.
     inside = possible & np.all(np.isfinite(coordinate), axis=1)
@@ -218,18 +217,27 @@ def observed_density(
     location, scale = (one[:, places] for one in model.law.at(matrix))
     kernels, standard, blur = kernels_of(model), (coordinate - location) / scale, blur / scale
     left = standard - bed.mean @ kernels.root[places].T
-    linear = matrix[:, : len(model.runs.inputs)]
-    chances = log_row_weights(linear, model.row_points, model.law.weights, model.choices.widths)
-    try:
-        found = kernels.log_density(places, left, blur, chances, bed.spread)
-    except np.linalg.LinAlgError as error:
-        raise ValueError(
-            f"{', '.join(observed)} have no density together: in the runs some of them follow from the others to "
-            "the last digit; leave such outputs out, or give each an error"
-        ) from error
+    chances = log_row_weights(
+        matrix[:, : len(model.runs.inputs)], model.row_points, model.law.weights, model.choices.widths
+    )
+    found = _by_rows(list(observed), kernels, places, (left, blur), chances, bed.spread)
     steepness -= np.log(scale).sum(axis=1)
     density: Array = np.where(inside, chance + found + steepness, -np.inf)
     return density, bed.given(kernels.root, places, left, blur)
+
+
+def _by_rows(
+    names: Sequence[str], kernels: Kernels, places: Sequence[int], seen: tuple[Array, Array], chances: Array,
+    spread: Array,
+) -> Array:  # fmt: skip
+    """`Kernels.log_density` of outputs and blurs seen; raises ValueError where some outputs follow from the others."""
+    try:
+        return kernels.log_density(places, *seen, chances, spread)
+    except np.linalg.LinAlgError as error:
+        raise ValueError(
+            f"{', '.join(names)} have no density together: in the runs some of them follow from the others to "
+            "the last digit; leave such outputs out, or give each an error"
+        ) from error
 
 
 def _by_expansion(normals: Normals, coordinate: Array, blur: Array) -> Array:

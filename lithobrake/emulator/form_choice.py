@@ -87,8 +87,8 @@ def chosen_by_groups(runs: TrainingRuns, indices: Indices, matrix: Array, form: 
             return Chosen(choices, expansion, scores)
     if not choices.follows_inputs:
         energy, ensembles = energy_of_rows, of_rows
-    members = (_members(runs, matrix, one) for one in (ensembles, of_rows))
-    return Chosen(choices, None, scores_of(runs, *members, energy, energy_of_rows))
+    members = _members(runs, matrix, ensembles)
+    return Chosen(choices, None, scores_of(runs, members, _members(runs, matrix, of_rows), energy, energy_of_rows))
 
 
 def _gains(gain: Array, group: NDArray[np.int64]) -> bool:

@@ -112,7 +112,6 @@ def parts_of(content: dict[str, Any]) -> Parts:
     class_choice = ClassChoice(
         float(content["class_inverse_penalty"]), None if rung is None else _ladder_from_json([rung], inputs)[0]
     )
-    # Emulators from before there were expansions have rows, and no such key.
     expansion = _expansion_from_json(content.get("expansion"), runs)
     return Parts(runs, Terms(runs.inputs, indices), choices, class_choice, weights, law, classes, scores, expansion)
 
@@ -129,6 +128,7 @@ def _expansion_to_json(expansion: StochasticExpansion) -> dict[str, Any]:
 
 def _expansion_from_json(content: dict[str, Any] | None, runs: TrainingRuns) -> StochasticExpansion | None:
     """An expansion, where there is one; raises ValueError where it does not fit the runs, or itself."""
+    # Emulators from before there were expansions have rows, and no such key.
     if content is None:
         return None
     latent, noise, inputs = content["latent"], float(content["noise"]), len(runs.inputs)
