@@ -13,8 +13,8 @@ from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator.density import BedEffect, Kernels, kernels_of, observed_density
 from lithobrake.emulator.latent_variable import BRANCHES
-from lithobrake.emulator.law import drawn_rows, fit_classes, fit_law, row_weights, smoothed, smoothing
-from lithobrake.emulator.mean_law import MeanLaw, found_inputs, mean_law
+from lithobrake.emulator.law import best_choices, drawn_rows, fit_classes, fit_law, row_weights, smoothed, smoothing
+from lithobrake.emulator.mean_law import MeanLaw, candidate_terms, found_inputs, mean_law
 from lithobrake.emulator.output_law import OutputLaw, output_law
 from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
@@ -191,7 +191,12 @@ class Emulator(Parts):
         """
         target = self.runs.y[:, list(self.runs.modelled)] if physical else self.runs.coordinates
         there = self.runs.has_outputs
-        return mean_law(self.runs.inputs, self.runs.x[there], target, self.choices.location, self.weights[there])
+        x, weights, ladders = self.runs.x[there], self.weights[there], self.choices.location
+        if self.follows_inputs and not any(ladders):
+            # Near runs and an expansion have a mean too, which no location says.
+            terms = candidate_terms(self.runs.inputs)
+            ladders = best_choices(TermTable(terms.indices, terms.matrix(x), weights), self.runs.coordinates).location
+        return mean_law(self.runs.inputs, x, target, ladders, weights)
 
     def found_inputs(self, level: float = LEVEL, seed: int = 0) -> dict[str, bool]:
         """Say which inputs change the mean of any output: one test for all inputs and outputs together.
