@@ -7,7 +7,7 @@ benchmarks/results/emulator_peers.csv: the energy distance of its law from the t
 over that of drawing one of the runs (200 draws each, without the bias of so few), or, of the published cases, the mean
 over 200 points of W2**2 between the laws over the variance of the output (4000 draws, 1000 levels). `capture` is the
 root mean square error of the chance of capture. SIR: the runs and the 100 validation points of UQLab's StochasticSIR.
-Rows that are there are kept, so that one method is measured anew when its own are taken out (--anew fit expansion).
+Rows that are there are kept, so that one method is measured anew when its own are taken out (--anew fit).
 """
 
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ from lithobrake import emulator
 from lithobrake.chaos import Uniform, latin_hypercube
 
 TABLE = RESULTS / "emulator_peers.csv"
-OWN, EXPANSION, ANY_RUN = "fit", "expansion", "any run"
+OWN, ANY_RUN = "fit", "any run"
 LEVELS = (np.arange(1000) + 0.5) / 1000
 SIR, BOUNDED_SIR = "SIR", "SIR, lower=0"
 KINDS = {"case": str, "method": str, "runs": int, "seed": int}
@@ -70,11 +70,6 @@ def drawn(method: str, case: Case, study: tuple, points: np.ndarray, count: int)
             capture = float(np.sqrt(np.mean((chances - case.capture(everywhere)) ** 2)))
             return with_outputs(model.sample(points, 20 * count), count), cpu, capture
         return model.sample(points, count), cpu, capture
-    if method == EXPANSION:
-        law, cpu = timed(
-            lambda: emulator.fit_stochastic_expansion(case.inputs, x, y[:, 0], groups=group, lower=case.lower)
-        )
-        return law.sample(points, count)[:, :, None], cpu, capture
     if method == ANY_RUN:
         share = float(np.mean(~there))
         if case.capture is not None:
@@ -134,12 +129,11 @@ def _key(row: Row) -> tuple[str, str, int, int]:
 
 
 def wanted(cases: list[str], methods: list[str], runs: list[int], seeds: int) -> Iterator[tuple[str, str, int, int]]:
-    """Case, method, number of runs and seed of all rows; the expansion has one output, and so the published cases."""
+    """Case, method, number of runs and seed of all rows."""
     for name in cases:
         names = (SIR, BOUNDED_SIR) if name == SIR else (name,)
         for case, method, count in product(names, methods, PUBLISHED_RUNS.get(name, runs)):
-            if method != EXPANSION or name not in TRUTHS:
-                yield from ((case, method, count, seed) for seed in range(1 if name == SIR else seeds))
+            yield from ((case, method, count, seed) for seed in range(1 if name == SIR else seeds))
 
 
 def measured(name: str, method: str, runs: int, seed: int, sir: Path) -> Row:
@@ -150,7 +144,7 @@ def measured(name: str, method: str, runs: int, seed: int, sir: Path) -> Row:
 
 
 def main() -> None:
-    everything = [ANY_RUN, OWN, EXPANSION, *RIVALS]
+    everything = [ANY_RUN, OWN, *RIVALS]
     options = command_line(
         __doc__, cases=[*TRUTHS, *PUBLISHED], methods=everything, runs=[150, 300], seeds=5, sir=Path(), out=TABLE,
         anew=[""],

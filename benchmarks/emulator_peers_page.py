@@ -6,7 +6,7 @@ python benchmarks/emulator_peers_page.py
 import statistics
 from collections.abc import Sequence
 
-from emulator_peers import ANY_RUN, EXPANSION, KINDS, OWN, TABLE
+from emulator_peers import ANY_RUN, KINDS, OWN, TABLE
 from emulator_rivals import RIVALS
 from emulator_truths import PUBLISHED, TRUTHS
 from harness import Row, read_rows
@@ -17,7 +17,7 @@ PUBLISHED_SPCE = {("bimodal", 400): 0.0201, ("bimodal", 800): 0.0149, ("bimodal"
 PUBLISHED_PROCESS = {("bimodal", 400): 0.068, ("bimodal", 800): 0.065, ("bimodal", 1600): 0.063}
 HEADS = {
     OWN: "`fit`", "near rows": "near runs", "process and residuals": "Gaussian process", "forest rows": "forest",
-    "Gaussian mixture": "mixture", EXPANSION: "`fit_stochastic_expansion`", ANY_RUN: "any run",
+    "Gaussian mixture": "mixture", ANY_RUN: "any run",
 }  # fmt: skip
 
 
@@ -58,7 +58,7 @@ def summary(rows: list[Row]) -> dict[str, str | int]:
 
 
 def published_table(rows: list[Row]) -> str:
-    methods, lines = [OWN, EXPANSION, *RIVALS, ANY_RUN], []
+    methods, lines = [OWN, *RIVALS, ANY_RUN], []
     for case, runs in sorted({(row["case"], row["runs"]) for row in rows if row["case"] in PUBLISHED}):
         cells = []
         for method in methods:
@@ -92,7 +92,7 @@ def _captures(ring: Sequence[Row], method: str, runs: int) -> list[float]:
 def main() -> None:
     rows = read_rows(TABLE, KINDS)
     seeds, of_published = (len({row["seed"] for row in rows if row["case"] in cases}) for cases in (TRUTHS, PUBLISHED))
-    rivals = len({row["seed"] for row in rows if row["case"] in PUBLISHED and row["method"] not in (OWN, EXPANSION)})
+    rivals = len({row["seed"] for row in rows if row["case"] in PUBLISHED and row["method"] != OWN})
     ring = [row for row in rows if row["case"] == "capture in a ring"]
     captures = "; ".join(
         f"{HEADS[method]} {' and '.join(f'{statistics.mean(errors):.2f}' for errors in by_runs)}"

@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from lithobrake.campaign import LocalExecutor, executors
 from lithobrake.campaign.single_run import Limits
 from lithobrake.campaign.worker import pickled
-from lithobrake.emulator import validation
+from lithobrake.emulator import form_choice
 from lithobrake.pipeline import study_run
 from lithobrake.pipeline.commands import rare_landings, site_maps
 from lithobrake.report import reports
@@ -83,7 +83,7 @@ def quick_studies() -> Iterator[None]:
     What an emulator is worth is tested in tests/emulator, how pages look in tests/report, processes in tests/campaign.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(validation, "MOST_FOLDS", 4)
+        patch.setattr(form_choice, "MOST_FOLDS", 4)
         patch.setitem(STYLE, "savefig.dpi", 50)
         patch.setattr(os, "fsync", lambda file: None)
         patch.setattr(sqlite3, "connect", partial(sqlite3.connect, factory=Unsynced))

@@ -235,7 +235,7 @@ def _likelihood(
     for number, one in enumerate(observations):
         given = {**dict(zip(shared, points.T, strict=True)), **one.known}
         x = checked_points(inputs, posterior.completed_points(inputs, given, len(points), seed * 1000 + number))
-        at.append((models[0].terms.matrix(x), bounds(x) if bounds else (None, None)))
+        at.append(((x, models[0].terms.matrix(x)), bounds(x) if bounds else (None, None)))
     for bed in posterior.by_bed(observations):
         for place, refit in enumerate(models):
             effect = refit.bed_effect if len(bed) > 1 else BedEffect.none(len(refit.runs.modelled))

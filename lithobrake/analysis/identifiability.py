@@ -133,9 +133,9 @@ def _likelihoods(
         given = dict(zip((name for name in inputs if name not in own), shared.T, strict=True))
         return completed_points(inputs, given, len(shared), 7919 * seed + offset)
 
-    def looked_at(offset: int) -> tuple[Array, tuple[ArrayLike | None, ArrayLike | None]]:
+    def looked_at(offset: int) -> tuple[tuple[Array, Array], tuple[ArrayLike | None, ArrayLike | None]]:
         x = with_own(points, offset)
-        return model.terms.matrix(x), bounds(x) if bounds else (None, None)
+        return (x, model.terms.matrix(x)), bounds(x) if bounds else (None, None)
 
     at = with_own(np.tile(truth, (MOST_BOUNCES, 1)), 0)
     low, high = bounds(at) if bounds else (None, None)

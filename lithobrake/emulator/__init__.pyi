@@ -4,7 +4,5 @@ from .model import Draws as Draws
 from .model import Emulator as Emulator
 from .model import law_tables as law_tables
 from .model import load as load
-from .stochastic_expansion import StochasticExpansion as StochasticExpansion
-from .stochastic_expansion import fit_stochastic_expansion as fit_stochastic_expansion
-from .stochastic_expansion import load_stochastic_expansion as load_stochastic_expansion
+from .output_law import OutputLaw as OutputLaw
 from .validation import Scores as Scores

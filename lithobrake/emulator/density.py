@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.emulator.law import log_row_weights, smoothing
+from lithobrake.emulator.stochastic_expansion import Normals
 from lithobrake.emulator.storage import Parts
 from lithobrake.emulator.training_runs import with_slope
 from lithobrake.vocabulary.array_types import Array
@@ -183,18 +184,19 @@ def kernels_of(model: Parts) -> Kernels:
 def observed_density(
     model: Parts,
     observed: Mapping[str, float],
-    matrix: Array,
+    at: tuple[Array, Array],
     errors: Mapping[str, float],
     outcome: str | None,
     bounds: tuple[ArrayLike | None, ArrayLike | None],
     bed: BedEffect,
 ) -> tuple[Array, BedEffect]:
-    """Logarithm of the density of an observed run at terms [point_count, term_count], and what it says of its bed.
+    """Logarithm of the density of an observed run at points, and what it says of its bed.
 
+    at: points [point_count, input_count] in physical units, and the emulator's terms there [point_count, term_count].
     observed, errors, outcome, bounds (lower and upper): as in `Emulator.log_density`. bed: its effect as far as other
     runs show it. An outcome without outputs has its chance alone, and says nothing of the bed.
     """
-    linear = matrix[:, : len(model.runs.inputs)]
+    points, matrix = at
     ended = _checked_outcome(model, observed, errors, outcome)
     chance = np.log(np.maximum(model.classes.chances(matrix)[:, ended], np.finfo(float).tiny))
     if not observed:
@@ -203,27 +205,44 @@ def observed_density(
     columns = [model.runs.output_names.index(name) for name in observed]
     y = np.broadcast_to(list(observed.values()), (len(matrix), len(columns)))
     possible = np.all((y > low[:, columns]) & (y < high[:, columns]), axis=1)
-    bent_low, bent_high = model.runs.bending(low, high)
-    coordinate, slope = with_slope(y, bent_low[:, columns], bent_high[:, columns])
+    coordinate, slope = with_slope(y, *(bound[:, columns] for bound in model.runs.bending(low, high)))
     places = [model.runs.modelled.index(column) for column in columns]
-    location, scale = (one[:, places] for one in model.law.at(matrix))
     # What lies beyond a bound at some point cannot have come from there.
     inside = possible & np.all(np.isfinite(coordinate), axis=1)
-    kernels = kernels_of(model)
-    standard = (np.where(inside[:, None], coordinate, 0.0) - location) / scale
-    blur = slope * [errors.get(name, 0.0) for name in observed] / scale
+    steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1)
+    coordinate, blur = np.where(inside[:, None], coordinate, 0.0), slope * [errors.get(name, 0.0) for name in observed]
+    if model.expansion is not None:
+        found = _by_expansion(model.expansion.normals(points), coordinate, blur)
+        return np.where(inside, chance + found + steepness, -np.inf), bed
+    location, scale = (one[:, places] for one in model.law.at(matrix))
+    kernels, standard, blur = kernels_of(model), (coordinate - location) / scale, blur / scale
     left = standard - bed.mean @ kernels.root[places].T
-    chances = log_row_weights(linear, model.row_points, model.law.weights, model.choices.widths)
-    try:
-        found = kernels.log_density(places, left, blur, chances, bed.spread)
-    except np.linalg.LinAlgError as error:
-        raise ValueError(
-            f"{', '.join(observed)} have no density together: in the runs some of them follow from the others to "
-            "the last digit; leave such outputs out, or give each an error"
-        ) from error
-    steepness = np.log(np.where(inside[:, None], slope, 1.0)).sum(axis=1) - np.log(scale).sum(axis=1)
+    chances = log_row_weights(
+        matrix[:, : len(model.runs.inputs)], model.row_points, model.law.weights, model.choices.widths
+    )
+    found = _by_rows(list(observed), kernels, places, (left, blur), chances, bed.spread)
+    steepness -= np.log(scale).sum(axis=1)
     density: Array = np.where(inside, chance + found + steepness, -np.inf)
     return density, bed.given(kernels.root, places, left, blur)
+
+
+def _by_rows(
+    names: Sequence[str], kernels: Kernels, places: Sequence[int], seen: tuple[Array, Array], chances: Array,
+    spread: Array,
+) -> Array:  # fmt: skip
+    """`Kernels.log_density` of outputs and blurs seen; raises ValueError where some outputs follow from the others."""
+    try:
+        return kernels.log_density(places, *seen, chances, spread)
+    except np.linalg.LinAlgError as error:
+        raise ValueError(
+            f"{', '.join(names)} have no density together: in the runs some of them follow from the others to "
+            "the last digit; leave such outputs out, or give each an error"
+        ) from error
+
+
+def _by_expansion(normals: Normals, coordinate: Array, blur: Array) -> Array:
+    """Logarithm of the density of a coordinate with errors of so many units, [point_count, 1] each, [point_count]."""
+    return replace(normals, deviation=np.hypot(normals.deviation, blur)).log_density(coordinate[:, 0])
 
 
 def _checked_outcome(

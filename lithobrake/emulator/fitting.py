@@ -10,12 +10,14 @@ from scipy import special
 from lithobrake.chaos.basis import Indices
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training_data import one_thread
+from lithobrake.emulator.form_choice import chosen_by_groups
 from lithobrake.emulator.law import Choices, ClassChoice, best_choices, best_class_choice, fit_classes, fit_law
 from lithobrake.emulator.mean_law import Terms, candidate_terms
 from lithobrake.emulator.model import Emulator
 from lithobrake.emulator.ridge_ladder import TermTable
+from lithobrake.emulator.stochastic_expansion import StochasticExpansion
 from lithobrake.emulator.training_runs import TrainingRuns, checked_runs, with_slope
-from lithobrake.emulator.validation import choices_by_groups, folds_of, mean_by_groups
+from lithobrake.emulator.validation import folds_of, mean_by_groups
 from lithobrake.vocabulary.array_types import Array
 
 # Of a normal law without bounds, the share that may lie beyond them.
@@ -81,8 +83,14 @@ def fit(
     riders: Sequence[int | str] = (),
     outcomes: Sequence[str] | None = None,
     output_names: Sequence[str] | None = None,
+    form: str | None = None,
 ) -> Emulator:
     """Fit the distribution of outputs at given inputs to runs, drawn from the law of the inputs.
+
+    Of these forms that of the best score on groups left out is chosen, and `Emulator.statement` says which:
+    rows about a location and a scale that follow the inputs; whole runs, the nearer the likelier; a stochastic
+    expansion in a latent variable, of one output without riders, whose draws come from no run; and any run, where no
+    form beats it by more than a standard error.
 
     x: [run_count, input_count] in physical units.
     y: [run_count, output_count]; a row of NaN where the outcome has no outputs.
@@ -93,13 +101,16 @@ def fit(
         -inf, inf or None for none. One that follows the inputs has to be given to `sample` too.
     riders: outputs that are drawn with their row unchanged, as columns or names: directions, times.
     outcomes: all outcomes there may be, where some may not have happened.
+    form: "rows" leaves the expansion out, and "expansion" takes it whatever its score; None chooses.
     Raises ValueError for shapes, values and labels that do not fit together.
     """
     runs = checked_runs(inputs, x, y, groups, outcome, outcomes, lower, upper, riders, output_names)
+    _check_form(form, runs)
     terms = candidate_terms(runs.inputs)
     matrix = terms.matrix(runs.x)
     runs = with_distant_bounds(runs, terms.indices, matrix[runs.has_outputs])
-    choices, scores = choices_by_groups(runs, terms.indices, matrix[runs.has_outputs])
+    chosen = chosen_by_groups(runs, terms.indices, matrix[runs.has_outputs], form)
+    choices = chosen.choices
     fold, class_count = folds_of(runs.group, OUTCOME_FOLDS), len(runs.outcome_names)
     class_choice = best_class_choice(
         terms.indices, matrix, runs.outcome, runs.output_outcome, class_count, fold
@@ -109,7 +120,20 @@ def fit(
     law = fit_law(TermTable(terms.indices, matrix[runs.has_outputs], ones[runs.has_outputs]), runs.coordinates, choices)
     factors = class_choice.factors(terms.indices)
     classes = fit_classes(matrix, factors, runs.outcome, class_count, class_choice.inverse_penalty, ones)
-    return Emulator(runs, terms, choices, class_choice, ones, law, classes, scores)
+    if form == "expansion" and chosen.expansion is None:
+        raise ValueError("y does not scatter about its mean, so it has no expansion: leave form out")
+    expansion = None if chosen.expansion is None else StochasticExpansion.of_runs(runs, chosen.expansion)
+    return Emulator(runs, terms, choices, class_choice, ones, law, classes, chosen.scores, expansion)
+
+
+def _check_form(form: str | None, runs: TrainingRuns) -> None:
+    if form not in (None, "rows", "expansion"):
+        raise ValueError(f"form is {form!r}; allowed: rows, expansion, or None to choose")
+    if form == "expansion" and runs.y.shape[1] > 1:
+        raise ValueError(
+            f"form is 'expansion', which has one output and no riders, but outputs are {', '.join(runs.output_names)}: "
+            "fit each output apart, or leave form out"
+        )
 
 
 def used_terms(indices: Indices, choices: Choices, class_choice: ClassChoice) -> NDArray[np.bool_]:

@@ -3,93 +3,125 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import optimize
+from scipy import optimize, special
 
 from lithobrake.chaos.basis import Indices, basis_matrix, multi_index_set
-from lithobrake.chaos.distributions import Distribution, Normal, Uniform
+from lithobrake.chaos.distributions import Distribution, Normal
 from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.emulator.validation import folds_of, mean_by_groups
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.given_numbers import whole_number
 
-# Distributions that the latent variable may have, and nodes of the Gauss rule that integrates over it: as fine as the
-# noise asks for, which else would show single nodes as peaks of the density.
-LATENTS: dict[str, tuple[Distribution, int]] = {"normal": (Normal(0.0, 1.0), 100), "uniform": (Uniform(-1.0, 1.0), 50)}
+# The latent variable is normal, and nodes of the Gauss rule that integrates over it are as fine as the noise asks for,
+# which else would show single nodes as peaks of the density; or it has the values -1 and 1: two branches.
+NORMAL, BRANCHES = "normal", "branches"
+LATENTS = (NORMAL, BRANCHES)
+LATENT, NODES = Normal(0.0, 1.0), 100
+# Of the logarithms of the odds, over the number of runs: keeps those of branches that are certain finite.
+ODDS_PENALTY = 0.5
 # Nodes of less weight than this cost time and change no digit that counts.
 LEAST_NODE_WEIGHT = 1e-9
 # Cubic in the latent variable: enough for skewness and two branches.
 LATENT_DEGREE = 3
-# Relative change of the mean logarithm of the density at which a climb ends.
-TOLERANCE = 1e-7
+# Of the largest output: less scatter about the mean is rounding.
+LEAST_SCATTER = 1e-9
+# Relative change of the mean logarithm of the density at which a climb ends, and one that is only scored.
+TOLERANCE, OF_SCORED = 1e-7, 1e-5
 MOST_STEPS = 300
 HIGHEST_DEGREE = 5
 # With fewer runs to a term, likelihood would follow single runs: such degrees are not looked at.
-RUNS_PER_TERM = 5
+RUNS_PER_TERM = 10
 # Noise as shares of the scatter about the mean, from nearly all of it down to where single runs become peaks.
 NOISE_SHARES = (0.95, 0.85, 0.7, 0.55, 0.4, 0.3, 0.2)
+# Of the noise of two branches towards that of most likelihood, at each share.
+NOISE_STEPS = 3
 FOLDS = 5
 
 
 @dataclass(frozen=True)
 class LatentTerms:
-    """Multi-indices [term_count, input_count + 1], the powers of the latent variable last; latent: its distribution."""
+    """Multi-indices [term_count, input_count + 1], the powers of the latent variable last; latent: "normal" or
+    "branches".
+
+    odds [odds_count, input_count]: multi-indices of the logarithm of the odds of the upper of two branches; none where
+    the latent variable is normal. Parameters are coefficients of the terms, and after them those of the odds.
+    """
 
     inputs: dict[str, Distribution]
     latent: str
     indices: Indices
+    odds: Indices
 
     @property
     def degree(self) -> int:
         return int(self.indices[:, :-1].sum(axis=1).max())
 
+    @property
+    def parameter_count(self) -> int:
+        return len(self.indices) + len(self.odds)
+
+    @property
+    def follows_inputs(self) -> bool:
+        return self.degree > 0 or len(self.odds) > 1
+
     def factors(self, points: Array) -> Array:
-        """What each term has of the inputs at points in physical units, shape [point_count, term_count]."""
-        return np.ascontiguousarray(basis_matrix(self.inputs, self.indices[:, :-1], points))
+        """What each parameter is multiplied by at points in physical units, shape [point_count, parameter_count]."""
+        return np.ascontiguousarray(basis_matrix(self.inputs, np.vstack([self.indices[:, :-1], self.odds]), points))
 
     @cached_property
     def of_power(self) -> Array:
         """Which power of the latent variable each term has, 1 at its place [term_count, power_count]."""
-        return np.eye(LATENT_DEGREE + 1)[self.indices[:, -1]]
+        return np.eye(len(self.rule[0]))[self.indices[:, -1]]
 
     @cached_property
     def rule(self) -> tuple[Array, Array]:
         """Polynomials of the latent variable at the nodes [power_count, node_count], and their weights [node_count]."""
-        distribution, count = LATENTS[self.latent]
-        nodes, weights = distribution.gauss(count)
+        if self.latent == BRANCHES:
+            return np.array([[1.0, 1.0], [-1.0, 1.0]]), np.full(2, 0.5)
+        nodes, weights = LATENT.gauss(NODES)
         kept = weights > LEAST_NODE_WEIGHT
-        return self.polynomials(nodes[kept]), weights[kept] / weights[kept].sum()
+        return LATENT.recurrence(LATENT_DEGREE).values(nodes[kept]), weights[kept] / weights[kept].sum()
 
-    def polynomials(self, germs: Array) -> Array:
-        """Polynomials of the latent variable at its values [value_count], shape [power_count, value_count]."""
-        return LATENTS[self.latent][0].recurrence(LATENT_DEGREE).values(germs)
+    def log_weights(self, factors: Array, parameters: Array) -> Array:
+        """Logarithms of the weights of the nodes at points of these factors, [point_count or 1, node_count]."""
+        if not len(self.odds):
+            return np.log(self.rule[1])[None]
+        logit = factors[:, len(self.indices) :] @ parameters[len(self.indices) :]
+        return -np.logaddexp(0.0, logit[:, None] * [1.0, -1.0])
 
-    def branches(self, factors: Array, coefficients: Array) -> Array:
+    def by_power(self, factors: Array, parameters: Array) -> Array:
         """Coefficients of the powers of the latent variable at points of these factors, [point_count, power_count]."""
-        return (factors * coefficients) @ self.of_power
+        terms = len(self.indices)
+        return (factors[:, :terms] * parameters[:terms]) @ self.of_power
 
-    def drawn(self, count: int, random: np.random.Generator) -> Array:
-        """Polynomials at so many values of the latent variable that are drawn, [power_count, count]."""
-        distribution = LATENTS[self.latent][0]
-        return self.polynomials(distribution.germ(distribution.ppf(random.random(count))))
+    def drawn(self, factors: Array, parameters: Array, count: int, random: np.random.Generator) -> Array:
+        """What terms give at so many values of the latent variable that are drawn, [point_count, count]."""
+        uniforms = random.random((len(factors), count))
+        if self.latent == BRANCHES:
+            upper = uniforms < np.exp(self.log_weights(factors, parameters)[:, 1:])
+            polynomials = np.stack([np.ones(upper.shape), np.where(upper, 1.0, -1.0)])
+        else:
+            polynomials = LATENT.recurrence(LATENT_DEGREE).values(special.ndtri(uniforms.ravel()))
+            polynomials = polynomials.reshape(-1, *uniforms.shape)
+        return np.einsum("pk,kpc->pc", self.by_power(factors, parameters), polynomials)
 
 
-def latent_terms(inputs: Mapping[str, Distribution], degree: int, latent: str) -> LatentTerms:
+def latent_terms(inputs: Mapping[str, Distribution], degree: int, latent: str, odds_degree: int = 0) -> LatentTerms:
     """Terms of the inputs up to a total degree, of the latent variable up to the third, and their products.
 
-    Products have the same total degree, but at least two: else the scatter could not change with the inputs. Of degree
-    0 are no inputs at all.
+    Products have the same total degree, but at least two: else the scatter could not change with the inputs. Two
+    branches have a distance that is linear in the inputs, and odds of odds_degree. Of degree 0 are no inputs at all.
     """
     highest = [int(min(degree, entry.highest_degree)) for entry in inputs.values()]
-    largest = max(degree, LATENT_DEGREE)
-    indices = multi_index_set(len(inputs) + 1, largest, max_degrees=[*highest, LATENT_DEGREE])
+    of_latent, together = (1, 2) if latent == BRANCHES else (LATENT_DEGREE, max(degree, 2))
+    indices = multi_index_set(len(inputs) + 1, max(degree, of_latent), max_degrees=[*highest, of_latent])
     of_inputs, power = indices[:, :-1].sum(axis=1), indices[:, -1]
     mixed = (of_inputs > 0) & (power > 0)
-    kept = (of_inputs <= degree) & (~mixed | (of_inputs + power <= max(degree, 2)))
-    return LatentTerms(dict(inputs), latent, indices[kept])
+    kept = (of_inputs <= degree) & (~mixed | (of_inputs + power <= together))
+    odds = multi_index_set(len(inputs), odds_degree)[: None if latent == BRANCHES else 0]
+    return LatentTerms(dict(inputs), latent, indices[kept], odds)
 
 
 @dataclass(frozen=True)
@@ -113,129 +145,150 @@ class LatentProblem:
         """The problem of some of the runs alone, chosen [run_count]."""
         return LatentProblem(self.terms, self.factors[chosen], self.target[chosen], self.weights[chosen])
 
-    def log_densities(self, coefficients: Array, noise: float) -> tuple[Array, Array]:
-        """Logarithm of the density of each target [run_count], and its derivative by what the expansion is at each
-        node [run_count, node_count]. noise: standard deviation beside the expansion.
+    def log_densities(self, parameters: Array, noise: float) -> tuple[Array, Array, Array]:
+        """Logarithm of the density of each target [run_count], share of each node in it [run_count, node_count], and
+        how far the target is from each, over the noise. noise: standard deviation beside the expansion.
         """
-        polynomials, node_weights = self.terms.rule
-        away = (self.target[:, None] - self.terms.branches(self.factors, coefficients) @ polynomials) / noise
-        exponents = np.log(node_weights) - 0.5 * away**2
+        means = self.terms.by_power(self.factors, parameters) @ self.terms.rule[0]
+        away = (self.target[:, None] - means) / noise
+        exponents = self.terms.log_weights(self.factors, parameters) - 0.5 * away**2
         # The largest exponent is taken out, or with little noise all of them would underflow.
         most = exponents.max(axis=1, keepdims=True)
         shares = np.exp(exponents - most)
         sums = shares.sum(axis=1, keepdims=True)
         logarithms = (most + np.log(sums))[:, 0] - np.log(noise) - 0.5 * np.log(2.0 * np.pi)
-        return logarithms, shares / sums * away / noise
+        return logarithms, shares / sums, away
 
-    def loss(self, coefficients: Array, noise: float) -> tuple[float, Array]:
-        """Negative mean logarithm of the density, and its gradient [term_count]."""
-        logarithms, slopes = self.log_densities(coefficients, noise)
-        share = self.weights / self.weights.sum()
-        by_power = (share[:, None] * slopes) @ self.terms.rule[0].T
-        gradient = (self.factors * (by_power @ self.terms.of_power.T)).sum(axis=0)
-        return -float(share @ logarithms), -gradient
+    def loss(self, parameters: Array, noise: float) -> tuple[float, Array]:
+        """Negative mean logarithm of the density with the penalty of the odds, and its gradient [parameter_count]."""
+        logarithms, shares, away = self.log_densities(parameters, noise)
+        terms, total = len(self.terms.indices), self.weights.sum()
+        share, odds = self.weights / total, parameters[terms:]
+        by_power = (share[:, None] * shares * away / noise) @ self.terms.rule[0].T
+        gradient = (self.factors[:, :terms] * (by_power @ self.terms.of_power.T)).sum(axis=0)
+        upper = np.exp(self.terms.log_weights(self.factors, parameters)[:, 1])
+        of_odds = (share * (shares[:, 1] - upper)) @ self.factors[:, terms:] - ODDS_PENALTY / total * odds
+        value = float(share @ logarithms) - 0.5 * ODDS_PENALTY / total * float(odds @ odds)
+        return -value, -np.concatenate([gradient, of_odds])
 
-    def climbed(self, start: Array, noise: float) -> Array:
-        """Coefficients [term_count] of most likelihood that are reached from a start."""
-        options = {"maxiter": MOST_STEPS, "maxcor": 20, "ftol": TOLERANCE}
+    def climbed(self, start: Array, noise: float, tolerance: float = TOLERANCE) -> Array:
+        """Parameters of most likelihood that are reached from a start, [parameter_count]."""
+        options = {"maxiter": MOST_STEPS, "maxcor": 20, "ftol": tolerance}
         found = optimize.minimize(self.loss, start, (noise,), method="L-BFGS-B", jac=True, options=options)
         return np.asarray(found.x)
 
-    def path(self, noise_shares: Sequence[float]) -> Iterator[tuple[float, Array]]:
-        """Noise and coefficients for each share of the scatter about the mean, from the largest share on."""
+    def path(self, noise_shares: Sequence[float], tolerance: float = TOLERANCE) -> Iterator[tuple[float, Array]]:
+        """Noise and parameters for each share of the scatter about the mean, from the largest share on."""
         mean, scatter = self._mean_fit()
-        alone = (self.terms.indices[:, :-1] == 0).all(axis=1) & (self.terms.indices[:, -1] == 1)
+        # Of some runs alone nothing may be left.
+        scatter = max(scatter, LEAST_SCATTER * float(np.abs(self.target).max()))
+        indices, none = self.terms.indices, np.zeros(len(self.terms.odds))
+        alone = np.append((indices[:, :-1] == 0).all(axis=1) & (indices[:, -1] == 1), none)
         found: list[Array] = []
         for share in noise_shares:
             noise = share * scatter
             # A line in the latent variable has all scatter that the noise leaves; without it the gradient is zero.
             starts = [mean + scatter * np.sqrt(1.0 - share**2) * alone, *found]
             # What was followed may have gone up the lesser of two peaks, which the likelihood shows at less noise.
-            found = [min((self.climbed(start, noise) for start in starts), key=lambda one: self.loss(one, noise)[0])]
-            yield noise, found[0]
+            peaks = [self.climbed(start, noise, tolerance) for start in starts]
+            found = [min(peaks, key=lambda one: self.loss(one, noise)[0])]
+            yield self._settled(noise, found[0], tolerance) if self.terms.latent == BRANCHES else (noise, found[0])
+
+    def _settled(self, noise: float, parameters: Array, tolerance: float) -> tuple[float, Array]:
+        """Noise and parameters nearer to those of most likelihood, which two branches of one noise have; beside a
+        normal latent variable less noise is always likelier, until it follows single runs.
+        """
+        for _ in range(NOISE_STEPS):
+            _, shares, away = self.log_densities(parameters, noise)
+            noise *= float(np.sqrt(self.weights @ (shares * away**2).sum(axis=1) / self.weights.sum()))
+            parameters = self.climbed(parameters, noise, tolerance)
+        return noise, parameters
+
+    @property
+    def scatters(self) -> bool:
+        """Whether the target scatters about its mean; else it has no density."""
+        return self._mean_fit()[1] > LEAST_SCATTER * float(np.abs(self.target).max())
 
     def _mean_fit(self) -> tuple[Array, float]:
-        """Least-squares coefficients of the terms without the latent variable [term_count], and the scatter left."""
-        without = self.terms.indices[:, -1] == 0
+        """Least-squares parameters of the terms without the latent variable, 0 for others, and the scatter left."""
+        without = np.append(self.terms.indices[:, -1] == 0, np.zeros(len(self.terms.odds), dtype=bool))
         root = np.sqrt(self.weights)
         coefficients = np.zeros(len(without))
         matrix = root[:, None] * self.factors[:, without]
         coefficients[without] = np.linalg.lstsq(matrix, root * self.target, rcond=None)[0]
         residual = self.target - self.factors @ coefficients
-        scatter = float(np.sqrt(self.weights @ residual**2 / self.weights.sum()))
-        if scatter <= 1e-9 * float(np.abs(self.target).max()):
-            raise ValueError(
-                "y does not scatter about a polynomial of the inputs, so it has no density: use lithobrake.chaos.fit"
-            )
-        return coefficients, scatter
-
-
-def most_likely(runs: TrainingRuns, degree: int | None, latent: str | None) -> tuple[LatentTerms, float, Array, float]:
-    """Terms that groups left out choose, noise and coefficients of most likelihood, and what they are worth: mean
-    logarithm of the density of a run left out. degree, latent: None chooses these too.
-    """
-    weights, group = np.ones(len(runs.x)), runs.group[runs.has_outputs]
-    problems = [LatentProblem.of_runs(runs, terms, weights) for terms in _candidates(runs, degree, latent)]
-    chosen = _simplest([_held_out(problem, group) for problem in problems], group)
-    shares = NOISE_SHARES[: chosen.share_count]
-    noise, coefficients = list(LatentProblem.of_runs(runs, chosen.terms, weights).path(shares))[-1]
-    return chosen.terms, noise, coefficients, float(chosen.logarithms.mean())
+        return coefficients, float(np.sqrt(self.weights @ residual**2 / self.weights.sum()))
 
 
 @dataclass(frozen=True)
-class _HeldOut:
-    """Terms, how many shares of the noise are gone down for the best, and logarithm of the density of each run where
-    its group is left out [run_count].
+class HeldOut:
+    """Terms, how many shares of the noise are gone down for the best, and of runs whose group is left out logarithm of
+    the density [run_count], and folds: which runs [run_count] with noise and parameters of the fit without them.
     """
 
     terms: LatentTerms
     share_count: int
     logarithms: Array
+    folds: tuple[tuple[NDArray[np.bool_], float, Array], ...] = ()
 
 
-def _simplest(tried: list[_HeldOut], group: NDArray[np.int64]) -> _HeldOut:
-    """Of those that the best does not beat by more than a standard error, the one of the fewest terms.
-
-    Of many that are tried, the best is so by luck too.
+def best_terms(runs: TrainingRuns) -> HeldOut | None:
+    """Terms that groups left out choose: of those that the best does not beat by more than a standard error, the one
+    of the fewest parameters. None where the output does not scatter.
     """
+    group = runs.group[runs.has_outputs]
+    tried: list[HeldOut] = []
+    for latent in LATENTS:
+        tried += _of_growing_degree(runs, latent, group)
+    if not tried:
+        return None
+    branched = max((one for one in tried if one.terms.latent == BRANCHES), key=lambda one: one.logarithms.mean())
+    tried += _kept(runs, [latent_terms(runs.inputs, branched.terms.degree, BRANCHES, 1)], group)
+    # Of many that are tried, the best is so by luck too.
     best = max(tried, key=lambda one: one.logarithms.mean())
     close = []
     for one in tried:
         gain, error = mean_by_groups(best.logarithms - one.logarithms, group)
         if gain <= error:
             close.append(one)
-    fewest = min(len(one.terms.indices) for one in close)
-    return max((one for one in close if len(one.terms.indices) == fewest), key=lambda one: one.logarithms.mean())
+    fewest = min(one.terms.parameter_count for one in close)
+    alike = [one for one in close if one.terms.parameter_count == fewest]
+    return max(alike, key=lambda one: one.logarithms.mean())
 
 
-def _candidates(runs: TrainingRuns, degree: int | None, latent: str | None) -> list[LatentTerms]:
-    """Terms of all degrees and latent variables that may be chosen; raises ValueError for a degree of too many."""
-    degrees = range(HIGHEST_DEGREE + 1) if degree is None else [whole_number("degree", degree, 0, HIGHEST_DEGREE)]
-    if latent is not None and latent not in LATENTS:
-        raise ValueError(f"latent is {latent!r}, but must be one of {', '.join(LATENTS)}, or None to choose")
-    latents = LATENTS if latent is None else (latent,)
-    found = [latent_terms(runs.inputs, one, law) for one, law in product(degrees, latents)]
-    # No inputs are always a candidate: that is the law to fall back on.
-    kept = [one for one in found if one.degree == 0 or RUNS_PER_TERM * len(one.indices) <= len(runs.y)]
-    if not kept:
-        raise ValueError(
-            f"degree is {degree}, which has {len(found[0].indices)} terms and needs {RUNS_PER_TERM} runs for each, but "
-            f"{len(runs.y)} runs have an output: lower it, or make more runs"
-        )
-    return kept
+def _of_growing_degree(runs: TrainingRuns, latent: str, group: NDArray[np.int64]) -> list[HeldOut]:
+    """All degrees from 0 up to where two in a row did not help: of an even law every other one is no use."""
+    found: list[HeldOut] = []
+    for degree in range(HIGHEST_DEGREE + 1):
+        means = [float(one.logarithms.mean()) for one in found]
+        if len(means) > 2 and max(means) > max(means[-2:]):
+            break
+        found += _kept(runs, [latent_terms(runs.inputs, degree, latent)], group)
+    return found
 
 
-def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> _HeldOut:
+def _kept(runs: TrainingRuns, candidates: Sequence[LatentTerms], group: NDArray[np.int64]) -> list[HeldOut]:
+    """Those of which the runs support the terms, scored; no inputs always are: that is the law to fall back on."""
+    ones = np.ones(len(runs.x))
+    few = [one for one in candidates if one.degree == 0 or RUNS_PER_TERM * one.parameter_count <= len(runs.y)]
+    problems = [LatentProblem.of_runs(runs, terms, ones) for terms in few]
+    return [_held_out(one, group) for one in problems if one.scatters]
+
+
+def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> HeldOut:
     """Follow the noise down until runs in groups left out are foretold worse than before."""
     fold = folds_of(group, FOLDS)
     tests = [fold == number for number in range(int(fold.max()) + 1)]
-    best = _HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
+    best = HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
     # All folds go down together, so that what single runs make of a little noise need not be found.
-    for count, steps in enumerate(zip(*(problem.of(~test).path(NOISE_SHARES) for test in tests), strict=True), 1):
+    for count, steps in enumerate(
+        zip(*(problem.of(~test).path(NOISE_SHARES, OF_SCORED) for test in tests), strict=True), 1
+    ):
         logarithms = np.empty(len(group))
-        for test, (noise, coefficients) in zip(tests, steps, strict=True):
-            logarithms[test] = problem.of(test).log_densities(coefficients, noise)[0]
+        folds = tuple((test, *step) for test, step in zip(tests, steps, strict=True))
+        for test, noise, parameters in folds:
+            logarithms[test] = problem.of(test).log_densities(parameters, noise)[0]
         if logarithms.mean() <= best.logarithms.mean():
             break
-        best = _HeldOut(problem.terms, count, logarithms)
+        best = HeldOut(problem.terms, count, logarithms, folds)
     return best

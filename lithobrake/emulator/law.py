@@ -18,7 +18,7 @@ LARGEST_SIZE = 4.0
 SCALE_STEPS = 3
 # Widths of a kernel that looks at all inputs, in units of the root mean square distance of two points, and of one that
 # looks at a single input, in deviations of it.
-BANDWIDTHS = (0.9, 0.65)
+BANDWIDTHS = (0.9, 0.65, 0.35, 0.2)
 WIDTHS = (0.8, 0.4, 0.2)
 # Of the normal rule for the smoothing; the rule itself would take a third off the skewness of a few hundred rows.
 SMOOTHING_FACTOR = 0.5

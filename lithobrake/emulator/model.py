@@ -3,7 +3,6 @@
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
 from html import escape
 
 import numpy as np
@@ -13,8 +12,10 @@ from lithobrake.chaos.basis import checked_points, input_tables
 from lithobrake.chaos.storage import read, write
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.emulator.density import BedEffect, Kernels, kernels_of, observed_density
-from lithobrake.emulator.law import drawn_rows, fit_classes, fit_law, row_weights, smoothed, smoothing
-from lithobrake.emulator.mean_law import MeanLaw, found_inputs, mean_law
+from lithobrake.emulator.latent_variable import BRANCHES
+from lithobrake.emulator.law import best_choices, drawn_rows, fit_classes, fit_law, row_weights, smoothed, smoothing
+from lithobrake.emulator.mean_law import MeanLaw, candidate_terms, found_inputs, mean_law
+from lithobrake.emulator.output_law import OutputLaw, output_law
 from lithobrake.emulator.ridge_ladder import TermTable
 from lithobrake.emulator.storage import FORMAT, Parts, content_of, parts_of
 from lithobrake.vocabulary.array_types import Array
@@ -22,6 +23,7 @@ from lithobrake.vocabulary.given_numbers import random_numbers, sample_count
 from lithobrake.vocabulary.number_words import LEVEL, percent
 from lithobrake.vocabulary.plain_text import html_table
 
+NO_ROWS = "the emulator is a stochastic expansion, which has no rows to draw from: give fit form='rows'"
 # Draws that are made at once: bounds the memory, and belongs to what a seed gives.
 _BLOCK = 1 << 18
 
@@ -29,7 +31,8 @@ _BLOCK = 1 << 18
 @dataclass(frozen=True)
 class Draws:
     """y [point_count, count, output_count], NaN where the drawn outcome has no outputs; outcome [point_count, count],
-    places among the outcome names; row [point_count, count], the run whose scatter and riders a draw has, or -1.
+    places among the outcome names; row [point_count, count], the run whose scatter and riders a draw has, or -1: of
+    what has no outputs, and of an expansion, whose draws come from no run.
     """
 
     y: Array
@@ -54,7 +57,7 @@ class Emulator(Parts):
     @property
     def follows_inputs(self) -> bool:
         """Whether draws depend on the inputs; else each is one of the runs."""
-        return self.choices.follows_inputs
+        return self.choices.follows_inputs or self.expansion is not None
 
     def __repr__(self) -> str:
         """Say what it draws at which inputs, and what these are worth."""
@@ -87,11 +90,12 @@ class Emulator(Parts):
                 "samples are resampled runs."
             )
         share = self.scores.gain / self.scores.energy_of_rows
-        return (
+        said = (
             f"On held-out {groups} the inputs improve the energy score by {percent(share, 1)} "
             f"(standard error {percent(self.scores.gain_error / self.scores.energy_of_rows, 1)}) "
             f"over resampling the {count} runs with outputs ({number} {groups})."
         )
+        return f"{said} {form_statement(self)}".rstrip()
 
     def outcome_probability(self, x: ArrayLike) -> Array:
         """Chances of the outcomes at x [point_count, input_count], shape [point_count, outcome_count]."""
@@ -120,7 +124,7 @@ class Emulator(Parts):
         step = max(1, _BLOCK // max(count, len(self.runs.y)))
         for start in range(0, len(points), step):
             block = slice(start, start + step)
-            parts.append(self._block(self.terms.matrix(points[block]), count, low[block], high[block], random))
+            parts.append(self._block(points[block], count, low[block], high[block], random))
         if not parts:
             empty = np.empty((0, count), dtype=np.int64)
             return Draws(np.empty((0, count, len(self.output_names))), empty, empty)
@@ -146,7 +150,19 @@ class Emulator(Parts):
         Raises ValueError for names and values that cannot be.
         """
         given, alone = (lower, upper), BedEffect.none(len(self.runs.modelled))
-        return observed_density(self, observed, self._matrix(x), errors or {}, outcome, given, alone)[0]
+        points = checked_points(self.runs.inputs, x)
+        at = points, self.terms.matrix(points)
+        return observed_density(self, observed, at, errors or {}, outcome, given, alone)[0]
+
+    def output_law(
+        self, x: ArrayLike, output: str | None = None, *, lower: ArrayLike | None = None, upper: ArrayLike | None = None
+    ) -> OutputLaw:
+        """The law of one output at each x [point_count, input_count], of runs that have outputs: with its density,
+        probabilities, quantiles and mean. That of what `draw` draws.
+
+        output: its name; None where there is one that is no rider. lower, upper: as in `sample`.
+        """
+        return output_law(self, checked_points(self.runs.inputs, x), output, (lower, upper))
 
     def refits(self, count: int = 200, seed: int = 0) -> list["Emulator"]:
         """Fit anew to groups drawn with replacement, `count` times: how far the emulator itself is uncertain.
@@ -160,12 +176,13 @@ class Emulator(Parts):
     def reweighted(self, weights: ArrayLike) -> "Emulator":
         """Fit anew with each run counted as often as weights say [run_count]."""
         counted = self.runs.checked_weights(weights)
-        matrix = self._run_matrix
+        matrix = self.terms.matrix(self.runs.x)
         there, indices = self.runs.has_outputs, self.terms.indices
         law = fit_law(TermTable(indices, matrix[there], counted[there]), self.runs.coordinates, self.choices)
         factors, penalty = self.class_choice.factors(indices), self.class_choice.inverse_penalty
         classes = fit_classes(matrix, factors, self.runs.outcome, len(self.outcome_names), penalty, counted)
-        return replace(self, weights=counted, law=law, classes=classes)
+        expansion = None if self.expansion is None else self.expansion.reweighted(self.runs, counted)
+        return replace(self, weights=counted, law=law, classes=classes, expansion=expansion)
 
     def mean_law(self, physical: bool = False) -> MeanLaw:
         """Mean and Sobol indices of E[y | x] for each modelled output, freed of noise.
@@ -174,7 +191,12 @@ class Emulator(Parts):
         """
         target = self.runs.y[:, list(self.runs.modelled)] if physical else self.runs.coordinates
         there = self.runs.has_outputs
-        return mean_law(self.runs.inputs, self.runs.x[there], target, self.choices.location, self.weights[there])
+        x, weights, ladders = self.runs.x[there], self.weights[there], self.choices.location
+        if self.follows_inputs and not any(ladders):
+            # Near runs and an expansion have a mean too, which no location says.
+            terms = candidate_terms(self.runs.inputs)
+            ladders = best_choices(TermTable(terms.indices, terms.matrix(x), weights), self.runs.coordinates).location
+        return mean_law(self.runs.inputs, x, target, ladders, weights)
 
     def found_inputs(self, level: float = LEVEL, seed: int = 0) -> dict[str, bool]:
         """Say which inputs change the mean of any output: one test for all inputs and outputs together.
@@ -192,7 +214,11 @@ class Emulator(Parts):
 
     @property
     def kernels(self) -> Kernels:
-        """The kernels about the residual rows whose sum is the density of an observed run."""
+        """The kernels about the residual rows whose sum is the density of an observed run. Raises ValueError for an
+        expansion, which has no rows.
+        """
+        if self.expansion is not None:
+            raise ValueError(NO_ROWS)
         return kernels_of(self)
 
     @property
@@ -200,19 +226,23 @@ class Emulator(Parts):
         """What runs of one group have in common, before any is seen. Raises ValueError where no group has two runs."""
         return BedEffect.of_groups(self.kernels.whitened, self.law.weights, self.runs.group[self.runs.has_outputs])
 
-    @cached_property
-    def _run_matrix(self) -> Array:
-        return self.terms.matrix(self.runs.x)
-
     def _matrix(self, x: ArrayLike) -> Array:
         return self.terms.matrix(checked_points(self.runs.inputs, x))
 
     def _block(
-        self, matrix: Array, count: int, lower: Array, upper: Array, random: np.random.Generator
+        self, points: Array, count: int, lower: Array, upper: Array, random: np.random.Generator
     ) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]:
         """Draws at some points: y, outcome and row, as in Draws."""
+        matrix = self.terms.matrix(points)
         linear, columns = matrix[:, : len(self.runs.inputs)], list(self.runs.modelled)
         outcome = drawn_rows(self.classes.chances(matrix), count, random)
+        without = outcome != self.runs.output_outcome
+        if self.expansion is not None:
+            y = self.runs.outputs_of(
+                self.expansion.draws(points, count, random)[:, :, None], lower[:, None], upper[:, None]
+            )
+            y[without] = np.nan
+            return y, outcome, np.full(outcome.shape, -1)
         chances = row_weights(linear, self.row_points, self.law.weights, self.choices.widths)
         row = drawn_rows(chances, count, random)
         location, scale = self.law.at(matrix)
@@ -221,12 +251,22 @@ class Emulator(Parts):
         y = self.runs.y[row]
         coordinate = location[:, None] + scale[:, None] * scatter
         y[:, :, columns] = self.runs.outputs_of(coordinate, lower[:, None], upper[:, None])
-        without = outcome != self.runs.output_outcome
         y[without] = np.nan
         # A place among the runs with outputs becomes one among all runs.
         places = np.nonzero(self.runs.has_outputs)[0][row]
         places[without] = -1
         return y, outcome, places
+
+
+def form_statement(model: Parts) -> str:
+    """Which form scored best, in a sentence; none for rows about a location and a scale, the form of most emulators."""
+    if model.expansion is not None:
+        terms = model.expansion.terms
+        latent = "two branches" if terms.latent == BRANCHES else f"a {terms.latent} latent variable"
+        return f"A stochastic expansion of degree {terms.degree} with {latent} scored best of all forms."
+    if not any(model.choices.location) and not any(model.choices.scale):
+        return "Samples are whole runs, the nearer the likelier: of all forms they scored best."
+    return ""
 
 
 def load(path: str | os.PathLike[str]) -> Emulator:
@@ -243,10 +283,12 @@ def law_tables(models: Sequence[Emulator]) -> dict[str, Array]:
     rows, row_weights and classes as in Law and OutcomeClasses; smoothing_size [model_count] and smoothing_root
     [model_count, coordinate_count, coordinate_count]; lower, upper [coordinate_count] of the first run; distant
     [coordinate_count], 1 where these bend no coordinate and draws are only kept inside. Raises ValueError for no
-    emulator.
+    emulator, and for an expansion.
     """
     if not models:
         raise ValueError("models are none, but must be at least one emulator: give those of refits")
+    if models[0].expansion is not None:
+        raise ValueError(NO_ROWS)
     first, columns = models[0], list(models[0].runs.modelled)
     linear = first.terms.matrix(first.runs.x)[first.runs.has_outputs, : len(first.runs.inputs)]
     smooth = [smoothing(model.law.rows, model.law.weights) for model in models]

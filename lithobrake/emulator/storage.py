@@ -11,9 +11,11 @@ import numpy as np
 
 from lithobrake.chaos import storage
 from lithobrake.chaos.basis import multi_index_set
+from lithobrake.emulator.latent_variable import BRANCHES, LATENT_DEGREE, LATENTS, LatentTerms
 from lithobrake.emulator.law import Choices, ClassChoice, Law, OutcomeClasses
 from lithobrake.emulator.mean_law import Terms
 from lithobrake.emulator.ridge_ladder import Ladder, Rung
+from lithobrake.emulator.stochastic_expansion import StochasticExpansion
 from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.emulator.validation import Scores
 from lithobrake.vocabulary.array_types import Array
@@ -35,6 +37,7 @@ class Parts:
     law: Law
     classes: OutcomeClasses
     scores: Scores
+    expansion: StochasticExpansion | None = None
 
     @cached_property
     def row_points(self) -> Array:
@@ -65,6 +68,7 @@ def content_of(model: Parts, statement: str) -> dict[str, Any]:
         "weights": model.weights.tolist(),
         "rows": model.law.rows.tolist(),
         "pit": model.scores.pit.tolist(),
+        "expansion": None if model.expansion is None else _expansion_to_json(model.expansion),
         **runs_to_json(runs),
     }
 
@@ -108,7 +112,36 @@ def parts_of(content: dict[str, Any]) -> Parts:
     class_choice = ClassChoice(
         float(content["class_inverse_penalty"]), None if rung is None else _ladder_from_json([rung], inputs)[0]
     )
-    return Parts(runs, Terms(runs.inputs, indices), choices, class_choice, weights, law, classes, scores)
+    expansion = _expansion_from_json(content.get("expansion"), runs)
+    return Parts(runs, Terms(runs.inputs, indices), choices, class_choice, weights, law, classes, scores, expansion)
+
+
+def _expansion_to_json(expansion: StochasticExpansion) -> dict[str, Any]:
+    return {
+        "latent": expansion.terms.latent,
+        "noise": expansion.noise,
+        "parameters": expansion.parameters.tolist(),
+        "multi_indices": expansion.terms.indices.tolist(),
+        "odds": expansion.terms.odds.tolist(),
+    }
+
+
+def _expansion_from_json(content: dict[str, Any] | None, runs: TrainingRuns) -> StochasticExpansion | None:
+    """An expansion, where there is one; raises ValueError where it does not fit the runs, or itself."""
+    # Emulators from before there were expansions have rows, and no such key.
+    if content is None:
+        return None
+    latent, noise, inputs = content["latent"], float(content["noise"]), len(runs.inputs)
+    indices = storage.indices_from_json(content["multi_indices"], inputs + 1)
+    odds = storage.indices_from_json(content["odds"], inputs) if latent == BRANCHES else np.empty((0, inputs), int)
+    highest = 1 if latent == BRANCHES else LATENT_DEGREE
+    if latent not in LATENTS or indices[:, -1].max() > highest or not 0.0 < noise < np.inf:
+        raise ValueError(f"latent must be one of {', '.join(LATENTS)}, its powers up to {highest}, noise above 0")
+    if runs.y.shape[1] != 1:
+        raise ValueError("output_names must hold one output, which is no rider")
+    terms = LatentTerms(runs.inputs, latent, indices, odds)
+    parameters = column_from_json("parameters", content["parameters"], terms.parameter_count)
+    return StochasticExpansion(terms, parameters, noise)
 
 
 def runs_to_json(runs: TrainingRuns) -> dict[str, Any]:

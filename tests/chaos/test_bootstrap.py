@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lithobrake import emulator
 from lithobrake.chaos import (
     Normal,
     Uniform,
@@ -22,7 +23,6 @@ from lithobrake.chaos import (
     sobol_intervals,
     sobol_sequence,
 )
-from lithobrake.emulator import load_stochastic_expansion
 
 CUBE = {name: Uniform(-1.0, 1.0) for name in "abc"}
 # y = a + b / 2 + a c: variances 1/3, 1/12, 1/9.
@@ -219,10 +219,8 @@ def test_mean_scatter_and_joint_samples(tmp_path):
     with pytest.raises(ValueError, match="seed is 'x'"):
         model.sample(test, seed="x")
     model.save(tmp_path / "model.json")
-    with pytest.raises(
-        ValueError, match="not a lithobrake stochastic expansion, but a lithobrake stochastic surrogate"
-    ):
-        load_stochastic_expansion(tmp_path / "model.json")
+    with pytest.raises(ValueError, match="not a lithobrake emulator, but a lithobrake stochastic surrogate"):
+        emulator.load(tmp_path / "model.json")
     assert np.array_equal(load_stochastic(tmp_path / "model.json").sample(test, seed=8), model.sample(test, seed=8))
 
 

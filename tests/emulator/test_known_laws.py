@@ -9,7 +9,7 @@ from scipy import special
 
 from lithobrake import emulator
 from lithobrake.chaos import Normal, Uniform, latin_hypercube, sobol_sequence
-from lithobrake.emulator import validation
+from lithobrake.emulator import form_choice
 from lithobrake.emulator.mean_law import MOST_TERMS, candidate_terms, found_inputs, terms_up_to
 from lithobrake.emulator.ridge_ladder import Rung, Smoother, TermTable, best_ladder
 
@@ -150,7 +150,7 @@ def test_indices_are_those_of_the_polynomial() -> None:
 @pytest.mark.parametrize("explained", [0.1, 0.3])
 def test_the_share_of_the_inputs_is_freed_of_noise(explained: float, monkeypatch: pytest.MonkeyPatch) -> None:
     # A tenth is in doubt where few runs are left: an eighth of them at a time is left out, and not a quarter.
-    monkeypatch.setattr(validation, "MOST_FOLDS", 4 if explained > 0.2 else 8)
+    monkeypatch.setattr(form_choice, "MOST_FOLDS", 4 if explained > 0.2 else 8)
     noise = np.sqrt(7.0 / 9.0 * (1.0 / explained - 1.0))
     shares = [fitted(1.0, noise, 240, seed).mean_law().share[0] for seed in range(10)]
     # Ten studies with a standard deviation of about 0.05 each.

@@ -1,4 +1,4 @@
-"""The face of an emulator: what it is given, what it draws, what it refuses, its file; and stochastic expansions."""
+"""The face of an emulator: what it is given, what it draws, what it refuses, its file; and the laws of one output."""
 
 import json
 from functools import cache, partial
@@ -12,6 +12,8 @@ from scipy import integrate, stats
 from lithobrake import emulator
 from lithobrake.chaos import Uniform
 from lithobrake.emulator.latent_variable import LatentProblem, latent_terms
+
+from ..quick_studies import quick_studies
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
 COUNT = 120
@@ -286,6 +288,11 @@ def branching(x: np.ndarray, z: np.ndarray) -> np.ndarray:
     return (1.5 + 0.5 * x[:, 0]) * np.sign(z) + 0.4 * stats.norm.ppf(np.modf(2.0 * stats.norm.cdf(z))[0])
 
 
+def crossing(x: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Two branches that cross in the middle, each with its own scatter."""
+    return 2.0 * x[:, 0] * np.sign(z) + 0.3 * stats.norm.ppf(np.modf(2.0 * stats.norm.cdf(z))[0])
+
+
 def price(x: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Geometric Brownian motion after a unit of time. Source: [Zhu-2023] (first example)."""
     return np.exp(x[:, 0] - 0.5 * x[:, 1] ** 2 + x[:, 1] * z)
@@ -304,21 +311,24 @@ def bounded_runs(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     return x, 0.4 / (1.0 + np.exp(-y))
 
 
-CHOSEN: dict[str, Any] = {"degree": 1, "latent": "normal"}
-# Arguments of the fits of models that several tests look at.
+FORM: dict[str, Any] = {"form": "expansion"}
+# Arguments of the fits of models that several tests look at; the last draws rows.
 FITS: dict[str, tuple[Any, Any, dict[str, Any]]] = {
-    "line": (ONE_INPUT, runs_of(ONE_INPUT, line), {}),
-    "bounded": (ONE_INPUT, bounded_runs(), {"lower": 0.0, "upper": 0.4, **CHOSEN}),
-    "positive": (MARKET, runs_of(MARKET, price), {"lower": 0.0, **CHOSEN}),
-    "branching": (ONE_INPUT, runs_of(ONE_INPUT, branching), {"latent": "uniform", "degree": 3}),
+    "line": (ONE_INPUT, runs_of(ONE_INPUT, line), FORM),
+    "bounded": (ONE_INPUT, bounded_runs(), {"lower": 0.0, "upper": 0.4, **FORM}),
+    "positive": (MARKET, runs_of(MARKET, price), {"lower": 0.0, **FORM}),
+    "branching": (ONE_INPUT, runs_of(ONE_INPUT, branching), FORM),
+    "crossing": (ONE_INPUT, runs_of(ONE_INPUT, crossing), {}),
+    "rows": (ONE_INPUT, bounded_runs(1), {"lower": 0.0, "upper": 0.4, "form": "rows"}),
 }
 POINTS = {name: np.atleast_2d([0.3] if name != "positive" else [0.05, 0.6]) for name in FITS}
 
 
 @cache
-def expand(name: str) -> emulator.StochasticExpansion:
+def expand(name: str) -> emulator.Emulator:
     inputs, runs, given = FITS[name]
-    return emulator.fit_stochastic_expansion(inputs, *runs, **given)
+    with quick_studies():
+        return emulator.fit(inputs, *runs, **given)
 
 
 @pytest.mark.parametrize("place", [-0.8, 0.0, 0.8])
@@ -326,89 +336,77 @@ def test_a_law_of_its_own_class_is_found(place: float) -> None:
     spread = 0.5 + 0.2 * place
     # Of a law that is a line over x, the standard error at x in units of the spread; four of them are allowed.
     error = 4.0 * spread * np.sqrt((1.0 + 3.0 * place**2) / RUNS)
-    draws = expand("line").sample([[place]], 100_000)[0]
-    assert abs(expand("line").mean([[place]])[0] - (1.0 + place)) < error
+    draws, law = expand("line").sample([[place]], 100_000)[0, :, 0], expand("line").output_law([[place]])
+    assert abs(law.mean[0] - (1.0 + place)) < error
     assert abs(draws.std() - spread) < error / np.sqrt(2.0)
     for level in (0.05, 0.5, 0.95):
         exact = stats.norm.ppf(level, 1.0 + place, spread)
         of_quantile = np.sqrt(level * (1.0 - level)) / stats.norm.pdf(stats.norm.ppf(level))
-        assert abs(expand("line").quantile([[place]], [level])[0, 0] - exact) < error * of_quantile
+        assert abs(law.quantile([level])[0, 0] - exact) < error * of_quantile
 
 
 @pytest.mark.parametrize(
     ("name", "law", "places"),
-    [("price", price, [[0.05, 0.4], [0.05, 0.6], [0.05, 0.8]]), ("branching", branching, [[-0.8], [0.0], [0.8]])],
+    [("positive", price, [[0.05, 0.4], [0.05, 0.6], [0.05, 0.8]]), ("branching", branching, [[-0.8], [0.0], [0.8]])],
 )
 def test_it_is_nearer_than_a_normal_with_the_right_mean_and_spread(name: str, law: Any, places: Any) -> None:
     levels = (np.arange(2000) + 0.5) / 2000
-    if name == "price":
-        model = emulator.fit_stochastic_expansion(MARKET, *runs_of(MARKET, price, seed=1), degree=2, latent="normal")
-    else:
-        model = expand(name)
     errors, errors_of_normal = [], []
     for place in np.array(places):
         many = law(np.tile(place, (200_000, 1)), stats.norm.ppf((np.arange(200_000) + 0.5) / 200_000))
         exact = np.quantile(many, levels)
         normal = stats.norm.ppf(levels, many.mean(), many.std())
-        errors.append(((model.quantile([place], levels)[0] - exact) ** 2).mean() / many.var())
+        errors.append(((expand(name).output_law([place]).quantile(levels)[0] - exact) ** 2).mean() / many.var())
         errors_of_normal.append(((normal - exact) ** 2).mean() / many.var())
     assert np.mean(errors) < np.mean(errors_of_normal)
 
 
 @pytest.mark.parametrize("name", FITS)
 def test_density_quantiles_and_draws_are_of_one_law(name: str) -> None:
-    model, x = expand(name), POINTS[name]
-    low, high = model.quantile(x, [1e-9, 1.0 - 1e-9])[0]
+    model, law = expand(name), expand(name).output_law(POINTS[name])
+    low, high = law.quantile([1e-9, 1.0 - 1e-9])[0]
     y = np.linspace(low, high, 20_001)
-    density = model.density(x, y)[0]
+    density = law.density(y)[0]
     assert integrate.trapezoid(density, y) == pytest.approx(1.0, abs=1e-5)
-    assert integrate.trapezoid(y * density, y) == pytest.approx(model.mean(x)[0], rel=1e-4)
+    assert integrate.trapezoid(y * density, y) == pytest.approx(law.mean[0], rel=1e-4)
     levels = [0.001, 0.3, 0.5, 0.99]
-    np.testing.assert_allclose(model.cdf(x, model.quantile(x, levels)), [levels], rtol=1e-8)
-    assert stats.kstest(model.sample(x, 4000, seed=2)[0], lambda values: model.cdf(x, values)[0]).pvalue > 0.01
+    np.testing.assert_allclose(law.cdf(law.quantile(levels)), [levels], rtol=1e-8)
+    assert stats.kstest(model.sample(POINTS[name], 4000, seed=2)[0, :, 0], lambda y: law.cdf(y)[0]).pvalue > 0.01
 
 
-@pytest.mark.parametrize("name", FITS)
-def test_the_likelihood_is_that_of_the_density(name: str) -> None:
-    model = expand(name)
-    densities = model.density(model.runs.x, model.runs.y)[:, 0]
-    assert model.log_likelihood == pytest.approx(np.log(densities).sum(), rel=1e-9)
+@pytest.mark.parametrize("name", ["bounded", "branching"])
+def test_the_density_of_an_observed_run_is_that_of_the_law(name: str) -> None:
+    model, x = expand(name), POINTS[name]
+    y = model.sample(x, 1)[0, 0, 0]
+    found = model.log_density({"y0": y}, x)[0]
+    assert found == pytest.approx(np.log(model.output_law(x).density([y])[0, 0]), rel=1e-9)
+    grid = np.linspace(y - 0.008, y + 0.008, 801)
+    blurred = stats.norm.pdf(y, grid, 1e-3)
+    # An error of a thousandth is so small that the slope of the coordinate is the same all over it.
+    exact = integrate.trapezoid(blurred * model.output_law(x).density(grid)[0], grid)
+    assert model.log_density({"y0": y}, x, errors={"y0": 1e-3})[0] == pytest.approx(np.log(exact), abs=0.02)
 
 
 def test_two_branches_are_two_peaks() -> None:
-    density = expand("branching").density([[0.8]], [-1.9, 0.0, 1.9])[0]
+    density = expand("branching").output_law([[0.8]]).density([-1.9, 0.0, 1.9])[0]
     assert density[1] < 0.5 * min(density[0], density[2])
 
 
 def test_bounds_are_never_crossed() -> None:
-    corners = [[-1.0], [1.0]]
-    draws, tails = (
-        expand("bounded").sample(corners, 100_000),
-        expand("bounded").quantile(corners, [1e-15, 1.0 - 1e-15]),
-    )
-    for values in (draws, tails):
+    bounded, corners = expand("bounded"), [[-1.0], [1.0]]
+    for values in (bounded.sample(corners, 100_000), bounded.output_law(corners).quantile([1e-15, 1.0 - 1e-15])):
         assert 0.0 < values.min() < values.max() < 0.4
     assert expand("positive").sample([[0.0, 0.9]], 100_000).min() > 0.0
-    np.testing.assert_array_equal(expand("bounded").density([[0.0]], [-1.0, 0.0, 0.4, 9.0]), np.zeros((1, 4)))
-    np.testing.assert_allclose(expand("bounded").cdf([[0.0]], [-1, 0.0, 0.4, 9.0]), [[0.0, 0.0, 1.0, 1.0]], rtol=1e-14)
-    assert expand("bounded").density([[0.0]], [1e-310]) == 0.0
+    law = bounded.output_law([[0.0]])
+    np.testing.assert_array_equal(law.density([-1.0, 0.0, 0.4, 9.0]), np.zeros((1, 4)))
+    np.testing.assert_allclose(law.cdf([-1, 0.0, 0.4, 9.0]), [[0.0, 0.0, 1.0, 1.0]], rtol=1e-14)
+    assert law.density([1e-310]) == 0.0
 
 
-def test_bounds_that_follow_the_inputs_are_asked_for() -> None:
-    x, y = bounded_runs()
-    limit = 0.4 + 0.1 * x
-    model = emulator.fit_stochastic_expansion(ONE_INPUT, x, y * limit[:, 0] / 0.4, lower=0.0, upper=limit, **CHOSEN)
-    np.testing.assert_allclose(
-        model.quantile([[0.5]], [0.5], upper=0.45) / 0.45, expand("bounded").quantile([[0.5]], 0.5) / 0.4
-    )
-    with pytest.raises(ValueError, match="upper is missing"):
-        model.density([[0.5]], [0.1])
-
-
-@pytest.mark.parametrize("latent", ["normal", "uniform"])
-def test_the_gradient_is_that_of_the_loss(latent: str) -> None:
+@pytest.mark.parametrize(("latent", "odds"), [("normal", 0), ("branches", 1)])
+def test_the_gradient_is_that_of_the_loss(latent: str, odds: int) -> None:
     problem = LatentProblem.of_runs(
-        expand("positive").runs, latent_terms(MARKET, 2, latent), np.random.default_rng(1).random(RUNS)
+        expand("positive").runs, latent_terms(MARKET, 2, latent, odds), np.random.default_rng(1).random(RUNS)
     )
     at, step = 0.3 * np.random.default_rng(0).standard_normal(problem.factors.shape[1]), 1e-5
     differences = [
@@ -419,99 +417,94 @@ def test_the_gradient_is_that_of_the_loss(latent: str) -> None:
     np.testing.assert_allclose(problem.loss(at, 0.4)[1], differences, atol=1e-8)
 
 
-def test_degree_and_latent_variable_are_chosen_by_groups_left_out() -> None:
-    x = runs_of(ONE_INPUT, line)[0][:60]
-    assert expand("line").degree >= 1
-    flat = np.random.default_rng(3).random(60)
-    tried = {
-        (degree, latent): emulator.fit_stochastic_expansion(ONE_INPUT, x, flat, degree=degree, latent=latent).held_out
-        for degree in (0, 1, 2, 3)
-        for latent in ("normal", "uniform")
-    }
-    chosen = emulator.fit_stochastic_expansion(ONE_INPUT, x, flat)
-    assert chosen.held_out == tried[chosen.degree, chosen.latent] == max(tried.values())
+def test_the_form_of_the_better_score_is_chosen_and_said() -> None:
+    crossing = expand("crossing")
+    assert crossing.expansion is not None
+    assert crossing.expansion.terms.latent == "branches"
+    assert "A stochastic expansion of degree" in crossing.statement
+    assert crossing.scores.energy < crossing.scores.energy_of_rows
+    assert 0.85 < crossing.scores.band_90[0] < 0.95
+    assert (crossing.draw([[0.0]], 3).row == -1).all()
+    assert (expand("rows").expansion, expand("rows").draw([[0.0]], 3).row.min() >= 0) == (None, True)
 
 
-def test_of_degree_zero_are_no_inputs() -> None:
-    model = emulator.fit_stochastic_expansion(ONE_INPUT, *runs_of(ONE_INPUT, line), degree=0, latent="normal")
-    quantiles = model.quantile([[-1.0], [1.0]], [0.1, 0.9])
-    np.testing.assert_array_equal(quantiles[0], quantiles[1])
-
-
-def test_runs_without_an_output_are_left_out() -> None:
-    x, y = runs_of(ONE_INPUT, line)
-    there = np.arange(RUNS) % 7 != 3
-    first = emulator.fit_stochastic_expansion(ONE_INPUT, x, np.where(there, y, np.nan), **CHOSEN)
-    second = emulator.fit_stochastic_expansion(ONE_INPUT, x[there], y[there], **CHOSEN)
-    np.testing.assert_array_equal(first.sample([[0.1]], 9), second.sample([[0.1]], 9))
+def test_whole_runs_are_drawn_where_nearness_tells_most() -> None:
+    """Below the middle two outputs are equal, above it opposite: no location or scale of one of them changes."""
+    random, x = np.random.default_rng(0), np.random.default_rng(1).uniform(-1.0, 1.0, (200, 1))
+    first = random.standard_normal(200)
+    y = np.column_stack([first, np.where(x[:, 0] < 0.0, first, -first) + 0.1 * random.standard_normal(200)])
+    with quick_studies():
+        model = emulator.fit(ONE_INPUT, x, y)
+    assert "Samples are whole runs, the nearer the likelier" in model.statement
+    drawn = model.draw([[-0.8], [0.8]], 2000)
+    correlations = [np.corrcoef(one.T)[0, 1] for one in drawn.y]
+    assert correlations[0] > 0.8 > -0.8 > correlations[1]
+    assert drawn.row.min() >= 0
 
 
 def test_refits_scatter_as_the_mean_is_uncertain() -> None:
-    means = [refit.mean([[0.0]])[0] for refit in expand("line").refits(40)]
+    line = expand("line")
+    means = [refit.output_law([[0.0]]).mean[0] for refit in line.refits(40)]
     # The standard error of 40 refits' own standard deviation is 11 %.
     assert np.std(means) == pytest.approx(0.5 / np.sqrt(RUNS), rel=0.35)
-    line = expand("line")
-    np.testing.assert_allclose(line.reweighted(np.ones(RUNS)).mean([[0.0]]), line.mean([[0.0]]), atol=1e-3)
+    again = line.reweighted(np.ones(RUNS))
+    np.testing.assert_allclose(again.output_law([[0.0]]).mean, line.output_law([[0.0]]).mean, atol=1e-3)
 
 
 @pytest.mark.parametrize("name", FITS)
-def test_a_saved_expansion_comes_back_bit_for_bit(tmp_path: Path, name: str) -> None:
+def test_a_saved_law_of_one_output_comes_back_bit_for_bit(tmp_path: Path, name: str) -> None:
     model = expand(name)
     model.save(tmp_path / "law.json")
-    again = emulator.load_stochastic_expansion(tmp_path / "law.json")
+    again = emulator.load(tmp_path / "law.json")
     np.testing.assert_array_equal(again.sample(POINTS[name], 50, seed=3), model.sample(POINTS[name], 50, seed=3))
-    np.testing.assert_array_equal(again.quantile(POINTS[name], 0.9), model.quantile(POINTS[name], 0.9))
-    assert (again.log_likelihood, again.held_out) == (model.log_likelihood, model.held_out)
+    quantiles = [one.output_law(POINTS[name]).quantile(0.9) for one in (again, model)]
+    np.testing.assert_array_equal(*quantiles)
+    assert again.statement == model.statement
 
 
-@pytest.mark.parametrize(("make", "load", "key", "value"), [
-    *((stored_emulator, emulator.load, *damage) for damage in (
-        ("location", [[0.0]]), ("rows", []), ("outcome", [7] * 90), ("riders", ["mass"]), ("multi_indices", [[0, 1]]),
-    )),
-    *((partial(expand, "line"), emulator.load_stochastic_expansion, *damage) for damage in (
-        ("latent", "gamma"), ("noise", 0.0), ("coefficients", [1.0]), ("multi_indices", [[0, 9]]), ("riders", ["y"]),
+@pytest.mark.parametrize(("make", "key", "value"), [
+    (stored_emulator, "location", [[0.0]]), (stored_emulator, "rows", []), (stored_emulator, "outcome", [7] * 90),
+    (stored_emulator, "riders", ["mass"]), (stored_emulator, "multi_indices", [[0, 1]]),
+    *((partial(expand, "line"), *damage) for damage in (
+        ("latent", "gamma"), ("noise", 0.0), ("parameters", [1.0]), ("multi_indices", [[0, 9]]),
     )),
 ])  # fmt: skip
-def test_a_damaged_file_is_refused(tmp_path: Path, make: Any, load: Any, key: str, value: object) -> None:
+def test_a_damaged_file_is_refused(tmp_path: Path, make: Any, key: str, value: object) -> None:
     path = tmp_path / "model.json"
     make().save(path)
-    path.write_text(json.dumps({**json.loads(path.read_text()), key: value}))
+    content = json.loads(path.read_text())
+    (content if content["expansion"] is None else content["expansion"])[key] = value
+    path.write_text(json.dumps(content))
     with pytest.raises(ValueError, match=r"model\.json"):
-        load(path)
+        emulator.load(path)
 
 
 @pytest.mark.parametrize(("change", "words"), [
-    ({"y": np.zeros((RUNS, 2))}, r"y has shape \(300, 2\), but must be \[run_count\]"),
+    ({"form": "gamma"}, "form is 'gamma'; allowed: rows, expansion, or None to choose"),
+    ({"y": np.zeros((RUNS, 2))}, "form is 'expansion', which has one output and no riders, but outputs are y0, y1"),
     ({"y": np.full(RUNS, 7.0)}, "y does not scatter"),
-    ({"y": np.zeros(3)}, "y has shape"),
-    ({"lower": 1.0}, "y is"),
-    ({"degree": 6}, "degree is 6, but must be a whole number from 0 to 5"),
-    ({"degree": 1.5}, "degree is 1.5"),
-    ({"latent": "gamma"}, "latent is 'gamma', but must be one of normal, uniform"),
-    ({"groups": np.zeros(RUNS)}, "groups hold one group"),
-    ({"x": np.full((RUNS, 1), 2.0)}, "300 of 300 points outside"),
 ])  # fmt: skip
-def test_what_no_expansion_fits_is_refused_in_a_sentence(change: dict[str, Any], words: str) -> None:
+def test_what_has_no_form_is_refused_in_a_sentence(change: dict[str, Any], words: str) -> None:
     x, y = runs_of(ONE_INPUT, line)
     with pytest.raises(ValueError, match=words):
-        emulator.fit_stochastic_expansion(ONE_INPUT, **{"x": x, "y": y, **change})
-
-
-def test_a_degree_of_too_many_terms_is_refused() -> None:
-    x, y = runs_of(ONE_INPUT, line)
-    with pytest.raises(ValueError, match="degree is 3, which has 10 terms and needs 5 runs for each"):
-        emulator.fit_stochastic_expansion(ONE_INPUT, x[:40], y[:40], degree=3)
+        emulator.fit(ONE_INPUT, **{"x": x, "y": y, "form": "expansion", **change})
 
 
 def test_questions_that_have_no_answer_are_refused() -> None:
+    law = expand("line").output_law([[0.0], [0.1]])
     with pytest.raises(ValueError, match=r"levels are \[0.5, 1.0\]"):
-        expand("line").quantile([[0.0]], [0.5, 1.0])
+        law.quantile([0.5, 1.0])
     with pytest.raises(ValueError, match=r"y has shape \(3, 1\), but must be \[value_count\] or \[2, value_count\]"):
-        expand("line").density([[0.0], [0.1]], [[1.0], [2.0], [3.0]])
+        law.density([[1.0], [2.0], [3.0]])
     with pytest.raises(ValueError, match="1 of 1 points outside"):
-        expand("line").mean([[2.0]])
+        expand("line").output_law([[2.0]])
+    with pytest.raises(ValueError, match="output is None; allowed: speed, spin"):
+        stored_emulator().output_law([[0.5, 0.0]])
+    for ask in (lambda: expand("line").kernels, lambda: expand("line").bed_effect):
+        with pytest.raises(ValueError, match="has no rows to draw from: give fit form='rows'"):
+            ask()
+    with pytest.raises(ValueError, match="has no rows to draw from"):
+        emulator.law_tables([expand("line")])
     for weights in (np.ones(3), np.zeros(RUNS), np.full(RUNS, -1.0), np.full(RUNS, np.nan)):
         with pytest.raises(ValueError, match=r"weights (have shape|count 0 runs)"):
             expand("line").reweighted(weights)
-    with pytest.raises(ValueError, match="count is 0"):
-        expand("line").sample([[0.0]], 0)

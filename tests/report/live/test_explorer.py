@@ -76,7 +76,7 @@ def test_terms_of_every_kind_of_input_are_those_of_python() -> None:
     }  # fmt: skip
     x = np.column_stack([law.ppf(random.random(400)) for law in inputs.values()])
     y = x[:, :1] + np.log(x[:, 1:2]) * x[:, 2:3] + 0.1 * random.standard_normal((400, 1))
-    model = emulator.fit(inputs, x, y)
+    model = emulator.fit(inputs, x, y, form="rows")
     found = answer_of(LAW, BEGIN + """
       law.used = Array.from({ length: law.terms }, (_, term) => term);
       return given.x.map((x) => Array.from(
