@@ -11,7 +11,7 @@ import numpy as np
 from lithobrake.analysis import sample_inputs
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, inputs_of
-from lithobrake.pipeline.design.lander_attitude import attitude_laws, drawn_attitudes, told_attitudes
+from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_laws, drawn_attitudes, told_attitudes
 from lithobrake.pipeline.first_touchdown.explorer_tables import write_explorer
 from lithobrake.pipeline.first_touchdown.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
 from lithobrake.pipeline.job import Job
@@ -128,6 +128,36 @@ def fitted(
         upper=upper[ended],
         riders=[name for name in outputs if name not in modelled],
         output_names=list(outputs),
+    )
+
+
+def over_attitudes(model: "Emulator") -> "Emulator":
+    """The emulator of the same runs whose scatter has the attitude in it, for whoever does not know that.
+
+    Raises ValueError where it has no other input.
+    """
+    from lithobrake import emulator
+
+    runs = model.runs
+    laws = {name: law for name, law in runs.inputs.items() if not name.startswith(PREFIX)}
+    if len(laws) == len(runs.inputs):
+        return model
+    if not laws:
+        raise ValueError("the emulator reads nothing but the attitude; give a number of the soil a distribution")
+    y, upper = np.full((2, len(runs.x), runs.y.shape[1]), np.nan)
+    y[runs.has_outputs], upper[:] = runs.y, np.inf
+    upper[runs.has_outputs] = runs.upper
+    return emulator.fit(
+        laws,
+        runs.x[:, [name in laws for name in runs.inputs]],
+        y,
+        groups=runs.group,
+        outcome=np.array(runs.outcome_names)[runs.outcome],
+        outcomes=runs.outcome_names,
+        lower=runs.lower[0],
+        upper=upper,
+        riders=runs.riders,
+        output_names=runs.output_names,
     )
 
 
