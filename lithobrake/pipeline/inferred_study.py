@@ -15,7 +15,7 @@ from lithobrake.files.atomic import write_json
 from lithobrake.files.reading import DamagedFileError, read_json, read_table
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.first_touchdown.emulator import EMULATOR_FILE, SPEED, SPIN, why_no_emulator
+from lithobrake.pipeline.first_touchdown.emulator import EMULATOR_FILE, SPEED, SPIN, over_attitudes, why_no_emulator
 from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder, StudyFolder
@@ -160,7 +160,8 @@ class InferredStudy:
             raise ValueError(f"{path} has no emulator of the first touchdown: {why} {said}")
         model = load(folder / EMULATOR_FILE)
         _refuse_unbounded(folder / EMULATOR_FILE, model)
-        return cls(study, folder, model)
+        # No bounce that is seen tells its attitude, so each is averaged over those of the runs.
+        return cls(study, folder, over_attitudes(model))
 
     @property
     def outputs(self) -> list[str]:

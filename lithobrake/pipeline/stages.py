@@ -70,8 +70,9 @@ JOURNEY_PARTS = (
     "study/delivered_states.py", "files/oem_reader.py", *RUN_PARTS, *FLIGHT_PARTS,
 )  # fmt: skip
 EMULATOR_PARTS = (
-    "pipeline/first_touchdown/emulator.py", "pipeline/first_touchdown/samples.py", "pipeline/runs/energy_bound.py",
-    "emulator", "chaos", "analysis", "results/table.py", "vocabulary/quantities.py",
+    "pipeline/first_touchdown/emulator.py", "pipeline/first_touchdown/explorer_tables.py",
+    "pipeline/first_touchdown/samples.py", "pipeline/design/lander_attitude.py", "pipeline/runs/energy_bound.py",
+    "emulator", "chaos", "analysis", "geometry/attitude.py", "results/table.py", "vocabulary/quantities.py",
 )  # fmt: skip
 EMULATED_PARTS = (
     *("pipeline/journeys", "pipeline/first_touchdown", "results/named_emulator.py"),

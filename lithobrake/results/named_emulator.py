@@ -68,8 +68,8 @@ class NamedEmulator:
     def sample(self, inputs: "Mapping[str, Value]", count: int, seed: int = 0) -> Table:
         """Sample `count` landings at inputs by dotted key, in the study file's units: numbers, or arrays of one length.
 
-        The terms of the lander's attitude ("attitude."), where it has any, may all be left out: each sample then has a
-        random attitude.
+        The terms of the lander's attitude ("attitude."), where it has any, may all be left out: each sample then has an
+        attitude as the study draws them.
         Result: a table with a row for each sample, those of one point one after the other: the inputs, the outcome, and
         outputs [SI], NaN where the lander does not leave the surface.
         Raises ValueError for names that are not those of the emulator, and for values outside their distributions.
@@ -155,7 +155,7 @@ class NamedEmulator:
         return () if any(name in inputs for name in terms) else terms
 
     def _with_attitudes(self, x: np.ndarray, seed: int) -> np.ndarray:
-        """Points [point_count, input_count], each with the terms of a random attitude."""
+        """Points [point_count, input_count], each with the terms of an attitude that the study may have."""
         from scipy.spatial.transform import Rotation
 
         from lithobrake.geometry.attitude import AttitudeTerms
@@ -163,13 +163,16 @@ class NamedEmulator:
         whole_number("seed", seed, 0)
         law = self._attitude
         assert law is not None
-        names = tuple(str(number) for number in range(len(law.axes)))
-        terms = AttitudeTerms(np.array(law.axes), names, law.has_sides, law.is_cube)
-        into_frame = Rotation.random(len(x), random_state=np.random.default_rng([seed, 1])).as_matrix()
-        found = terms.at(into_frame[:, 2], into_frame[:, 0])
-        # Rounding may put a term beyond its end.
-        lower, upper = np.array(list(terms.ranges.values())).T
+        random, names = np.random.default_rng([seed, 1]), tuple(str(number) for number in range(len(law.axes)))
+        if law.drawn is None:
+            terms = AttitudeTerms(np.array(law.axes), names, law.has_sides, law.is_cube)
+            into_frame = Rotation.random(len(x), random_state=random).as_matrix()
+            found = terms.at(into_frame[:, 2], into_frame[:, 0])
+        else:
+            found = np.array(law.drawn)[random.integers(len(law.drawn), size=len(x))]
         places = [list(self.model.runs.inputs).index(name) for name in law.input_names]
+        # Rounding may put a term beyond its end.
+        lower, upper = np.array([self.model.runs.inputs[name].support for name in law.input_names]).T
         filled = x.copy()
         filled[:, places] = np.clip(found, lower, upper)
         return filled

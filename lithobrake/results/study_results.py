@@ -205,7 +205,10 @@ class StudyResults(StudyTables):
         with reading(path, self.remedy):
             if explorer is not None:
                 return NamedEmulator(load(path), self._units, lambda: explorer.bound, explorer.attitude)
-            return NamedEmulator(load(path), self._units, lambda: self.explorer.bound)
+            # A study without samples has no tables, and an expansion's know no attitude.
+            known = (self.folder / file_names.EXPLORER_FILE).is_file()
+            attitude = self.explorer.attitude if known else None
+            return NamedEmulator(load(path), self._units, lambda: self.explorer.bound, attitude)
 
     @cached_property
     def explorer(self) -> "ExplorerTables":

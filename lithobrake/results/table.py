@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 # Rows that a notebook shows.
 SHOWN = 10
-FORMAT_VERSION = 4
+FORMAT_VERSION = 5
 NAMES = ("input_names", "output_names", "outcome_names")
 
 
@@ -129,7 +129,8 @@ class ExplorerAttitude:
     """What draws the attitudes of a touchdown, as `lithobrake.geometry.attitude` has them.
 
     input_names: of the terms; axes [axis_count][3] of the lander; sides: in words, with the directions of the lander
-    that are toward the ground.
+    that are toward the ground. drawn: terms of attitudes, [row_count][term_count], each as likely as the others; None
+    where all attitudes are.
     """
 
     input_names: tuple[str, ...]
@@ -137,6 +138,7 @@ class ExplorerAttitude:
     has_sides: bool
     is_cube: bool
     sides: dict[str, list[list[float]]]
+    drawn: list[list[float]] | None = None
 
 
 @dataclass(frozen=True, eq=False)

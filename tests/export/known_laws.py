@@ -17,7 +17,7 @@ from lithobrake.emulator import Emulator
 from lithobrake.export import ExportOptions
 from lithobrake.export.bounce_law import LAW, READERS, write_bounce_law
 from lithobrake.geometry.attitude import AttitudeTerms
-from lithobrake.pipeline.first_touchdown.emulator import tables_of_refits
+from lithobrake.pipeline.first_touchdown.explorer_tables import tables_of_refits
 from lithobrake.results import NamedEmulator
 from lithobrake.results.table import ExplorerAttitude, Table
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, Quantity

@@ -12,14 +12,17 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from lithobrake.campaign import Limits, LocalExecutor, WorkerDiedError
+from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.dependencies import bed_files
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.lander_attitude import PREFIX, drawn_attitudes, tells_attitude, told_attitudes
 from lithobrake.pipeline.design.random_inputs import draw
-from lithobrake.pipeline.first_touchdown.emulator import DrawnLandings, why_no_emulator
+from lithobrake.pipeline.first_touchdown.emulator import DrawnLandings, points_within, why_no_emulator
 from lithobrake.pipeline.first_touchdown.samples import VELOCITY
 from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import across_of, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.landings import model_of
+from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.pipeline.site import SITE_KEYS, with_site_gravity
 from lithobrake.pipeline.study_folder import FinishedFolder
@@ -30,7 +33,7 @@ from lithobrake.study.quantity import is_number
 from lithobrake.vocabulary.file_names import EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import FlightStatus, TouchdownOutcome
 from lithobrake.vocabulary.plain_text import closest, show
-from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, OUTPUTS
+from lithobrake.vocabulary.quantities import GROUND_KIND, GROUND_SIZE, IMPACT_AZIMUTH, ORIENTATION, OUTPUTS
 
 # What a campaign that is solved by a server says of each run; the setting is that of the study which is served.
 RUN_KEYS = ("seed", "inputs", "setting")
@@ -71,7 +74,8 @@ class ServedStudy:
         if self._has(TOUCHDOWN_EMULATOR_FILE):
             found.append(ServedModel("emulator", self._touchdowns.plain_inputs, LANDING, self.emulated_touchdown))
         elif self._has(EMULATOR_FILE):
-            found.append(ServedModel("emulator", tuple(self._emulator.runs.inputs), LANDING, self.emulated))
+            plain = tuple(name for name in self._emulator.runs.inputs if not name.startswith(PREFIX))
+            found.append(ServedModel("emulator", plain, LANDING, self.emulated))
         return found
 
     def _has(self, emulator: str) -> bool:
@@ -139,10 +143,12 @@ class ServedStudy:
     def emulated(self, point: list[float], config: Mapping[str, Any]) -> list[float]:
         """Draw a landing from the emulator. config: seed of the draw; inputs must be what the emulator was made for.
 
-        Raises ValueError for other inputs, and numbers that the study file may not have.
+        An attitude and azimuth among these take the place of those that the study draws. Raises ValueError for other
+        inputs, and numbers that the study file may not have.
         """
         seed, given = _seed(config), _inputs(config)
-        inputs = list(self._emulator.runs.inputs)
+        laws = self._emulator.runs.inputs
+        inputs = [name for name in laws if not name.startswith(PREFIX)]
         values = self.design.medians | dict(zip(inputs, point, strict=True))
         _refuse(self.study, {name: value for name, value in values.items() if name not in OF_BED})
         for name in values.keys() & given.keys():
@@ -152,12 +158,24 @@ class ServedStudy:
                     "leave it out, or serve the study that has it"
                 )
         _refuse(self.study, {name: value for name, value in given.items() if name != "bed"})
-        x = np.array([point])
+        x = points_within(laws, self._attitude(dict(zip(inputs, np.array([point]).T, strict=True)), given, seed))
         across = across_of(self.study, self.folder)
-        bound = energy_bound(self.design, self._bed_height, dict(zip(inputs, x.T, strict=True)), 1, across)
+        bound = energy_bound(self.design, self._bed_height, dict(zip(laws, x.T, strict=True)), 1, across)
         drawn = DrawnLandings.of(self._emulator, x, bound, seed)
         outcome = tuple(TouchdownOutcome)[int(drawn.outcome[0])]
         return landing_vector(outcome, {name: float(values[0]) for name, values in drawn.table().items()})
+
+    def _attitude(self, values: dict[str, np.ndarray], given: Mapping[str, Any], seed: int) -> dict[str, np.ndarray]:
+        """Inputs [1] of a touchdown with the terms of its attitude, as given, or as the study draws them."""
+        if tells_attitude(given):
+            told = {name: np.array([float(given[name])]) for name in (*ORIENTATION, IMPACT_AZIMUTH)}
+            return values | told_attitudes(self.study, told)
+        # A stream of its own, so that the attitude and the draw of the touchdown are independent.
+        return values | drawn_attitudes(self.design, self._runs.inputs, values, 1, hashed_seed(seed, "attitude"))
+
+    @cached_property
+    def _runs(self) -> DesignRuns:
+        return DesignRuns.load(self.folder, "drawn")
 
     @cached_property
     def _bed_height(self) -> float:

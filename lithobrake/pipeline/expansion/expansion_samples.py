@@ -10,7 +10,8 @@ from lithobrake.analysis import OutcomeModel, sample_inputs
 from lithobrake.chaos import basis_matrix, input_tables, sobol_sequence
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.expansion.expansions import runs_of_designs
-from lithobrake.pipeline.first_touchdown.emulator import EXPLORER_FILE, draw_emulator_samples, save_explorer
+from lithobrake.pipeline.first_touchdown.emulator import draw_emulator_samples
+from lithobrake.pipeline.first_touchdown.explorer_tables import EXPLORER_FILE, save_explorer
 from lithobrake.pipeline.first_touchdown.samples import CLEAR, Samples, sampling_seed, touchdown_values
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.run_table import DesignRuns

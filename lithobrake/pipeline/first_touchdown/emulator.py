@@ -1,32 +1,30 @@
-"""The emulator of drawn runs, its draws, and its tables for the explorer of the page."""
+"""The emulator of drawn runs, and its draws."""
 
-import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from lithobrake.analysis import sample_inputs
-from lithobrake.files.atomic import atomic_path
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign, inputs_of
+from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_laws, drawn_attitudes, told_attitudes
+from lithobrake.pipeline.first_touchdown.explorer_tables import write_explorer
 from lithobrake.pipeline.first_touchdown.samples import VELOCITY, Samples, outgoing_velocity, rolling_spin
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import (
     EnergyBound,
     across_of,
-    bound_numbers,
     energy_bound,
     height_of_beds,
 )
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.table import FORMAT_VERSION, NAMES, ExplorerTables
+from lithobrake.study import Study
 from lithobrake.vocabulary.constants import REFIT_COUNT
-from lithobrake.vocabulary.file_names import EMULATOR_FILE, EXPLORER_FILE
+from lithobrake.vocabulary.file_names import EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import OUTPUTS, SPIN_OUT
 
@@ -49,7 +47,7 @@ def fit_emulator(job: Job) -> None:
     """
     from lithobrake.emulator.training_runs import FEWEST
 
-    runs = DesignRuns.load(job.folder, "drawn")
+    runs = with_attitude(job.study, DesignRuns.load(job.folder, "drawn"))
     left = int(runs.has_outputs.sum())
     if left < FEWEST:
         why = f"{left} of {runs.run_count} landers left the surface, but an emulator needs {FEWEST}"
@@ -62,8 +60,13 @@ def fit_emulator(job: Job) -> None:
     height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
     bound = energy_bound(job.design, height, values, runs.run_count, across)
     outputs = outputs_of_runs(runs, RIDERS)
-    inputs = inputs_met(job.design, runs)
+    inputs = inputs_met(job.design, runs) | attitude_laws(job.design, runs.inputs)
     fitted(job, inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
+
+
+def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
+    """The runs with the terms of their attitudes among their inputs, where they tell them."""
+    return replace(runs, inputs={**runs.inputs, **told_attitudes(study, runs.inputs)})
 
 
 def inputs_met(design: DrawnDesign, runs: DesignRuns) -> "dict[str, Distribution]":
@@ -125,6 +128,36 @@ def fitted(
         upper=upper[ended],
         riders=[name for name in outputs if name not in modelled],
         output_names=list(outputs),
+    )
+
+
+def over_attitudes(model: "Emulator") -> "Emulator":
+    """The emulator of the same runs whose scatter has the attitude in it, for whoever does not know that.
+
+    Raises ValueError where it has no other input.
+    """
+    from lithobrake import emulator
+
+    runs = model.runs
+    laws = {name: law for name, law in runs.inputs.items() if not name.startswith(PREFIX)}
+    if len(laws) == len(runs.inputs):
+        return model
+    if not laws:
+        raise ValueError("the emulator reads nothing but the attitude; give a number of the soil a distribution")
+    y, upper = np.full((2, len(runs.x), runs.y.shape[1]), np.nan)
+    y[runs.has_outputs], upper[:] = runs.y, np.inf
+    upper[runs.has_outputs] = runs.upper
+    return emulator.fit(
+        laws,
+        runs.x[:, [name in laws for name in runs.inputs]],
+        y,
+        groups=runs.group,
+        outcome=np.array(runs.outcome_names)[runs.outcome],
+        outcomes=runs.outcome_names,
+        lower=runs.lower[0],
+        upper=upper,
+        riders=runs.riders,
+        output_names=runs.output_names,
     )
 
 
@@ -211,68 +244,37 @@ class DrawnLandings:
         return {name: found[name] for name in dict.fromkeys((*OUTPUTS, *found))}
 
 
-def write_explorer(job: Job, models: "Sequence[Emulator]") -> None:
-    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
-    bound = bound_numbers(job.design, height, across)
-    save_explorer(job.folder / EXPLORER_FILE, tables_of_refits(models, bound))
-
-
-def tables_of_refits(models: "Sequence[Emulator]", bound: Mapping[str, float]) -> ExplorerTables:
-    """Tables of `lithobrake.emulator.law_tables` of refits of one emulator, and azimuth [row_count], the direction
-    [rad] that each row was left in.
-    """
-    from lithobrake.analysis.confidence import t_quantile
-    from lithobrake.analysis.unseen_event import unseen_limit
-    from lithobrake.emulator import law_tables
-
-    runs = models[0].runs
-    groups = len(np.unique(runs.group))
-    return ExplorerTables(
-        {**law_tables(models), "azimuth": runs.y[:, runs.output_names.index(AZIMUTH)]},
-        input_names=tuple(runs.inputs),
-        output_names=tuple(runs.output_names[column] for column in runs.modelled),
-        outcome_names=tuple(runs.outcome_names),
-        output_outcome=runs.outcome_names[runs.output_outcome],
-        group_count=groups,
-        interval_reach=t_quantile(groups - 1),
-        unseen_limit=unseen_limit(runs.group),
-        bound=dict(bound),
-    )
-
-
-def save_explorer(path: Path, explorer: ExplorerTables) -> None:
-    import h5py
-
-    with atomic_path(path) as draft, h5py.File(draft, "w") as file:
-        for name, table in explorer.tables.items():
-            file.create_dataset(name, data=table)
-        file.attrs["format_version"] = FORMAT_VERSION
-        for name in (*NAMES, "output_outcome", "group_count", "interval_reach", "unseen_limit"):
-            file.attrs[name] = getattr(explorer, name)
-        file.attrs["attitude"] = json.dumps(None if explorer.attitude is None else asdict(explorer.attitude))
-        for name, value in explorer.bound.items():
-            file.attrs[f"bound.{name}"] = value
-
-
 def draw_emulator_samples(job: Job) -> None:
     """Sample all inputs and draw a landing for each; sample i comes from refit i modulo REFIT_COUNT.
 
     So every share of the samples has its scatter over refits in itself, and no flight is made for an interval alone.
     """
+    models = refits(job)
+    drawn_samples(job, models, _sampled(job, models[0].runs.inputs), "draws").save(job.folder)
+    write_explorer(job, models)
+
+
+def _sampled(job: Job, laws: "Mapping[str, Distribution]") -> np.ndarray:
+    """Points [sample_count, input_count] over the laws of the study, and over its attitudes."""
     study, design = job.study, job.design
+    runs = DesignRuns.load(job.folder, "drawn")
     if design.met_on_the_way:
         # Of landers behind those of the study: what these meet follows from where they come down.
         first = len(design.beds)
         rows = design.on_known_beds(first + study.sample_count).rows[len(design.rows) :]
-        laws = inputs_met(design, DesignRuns.load(job.folder, "drawn"))
-        ends = np.array([law.support for law in laws.values()])
-        # An arrival that no run had is as the nearest that one had.
-        x = np.clip(inputs_of(rows, list(laws)), *ends.T)
+        values = dict(zip(rows[0], inputs_of(rows, list(rows[0])).T, strict=True))
+        values |= told_attitudes(study, values)
     else:
         x = sample_inputs(design.inputs, study.sample_count, hashed_seed(study.seed, "samples"))
-    models = refits(job)
-    drawn_samples(job, models, x, "draws").save(job.folder)
-    write_explorer(job, models)
+        values = dict(zip(design.inputs, x.T, strict=True))
+        seed = hashed_seed(study.seed, "attitudes of samples")
+        values |= drawn_attitudes(design, runs.inputs, values, len(x), seed)
+    return points_within(laws, values)
+
+
+def points_within(laws: "Mapping[str, Distribution]", values: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Points [count, input_count] of values by name; what no run had is as the nearest that one had."""
+    return np.column_stack([np.clip(values[name], *law.support) for name, law in laws.items()])
 
 
 def drawn_samples(job: Job, models: "Sequence[Emulator]", x: np.ndarray, purpose: str) -> Samples:

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from lithobrake.files.atomic import atomic_path
-from lithobrake.geometry.attitude import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import PREFIX
-from lithobrake.pipeline.first_touchdown.emulator import save_explorer, tables_of_refits
+from lithobrake.pipeline.first_touchdown.explorer_tables import explorer_attitude, save_explorer, tables_of_refits
 from lithobrake.pipeline.first_touchdown.flights import write_table
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
@@ -22,10 +21,8 @@ from lithobrake.pipeline.journeys.simulated_touchdowns import WithLandings
 from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator, fit_touchdowns
 from lithobrake.pipeline.runs.energy_bound import bound_numbers
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.results.table import ExplorerAttitude
 from lithobrake.smallbody.touchdown import Touchdown
 from lithobrake.study import Study
-from lithobrake.study.lander_section import directions_of_sides, side_words
 from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE, TOUCHDOWN_EXPLORER_FILE
 from lithobrake.vocabulary.quantities import EMULATED, EMULATED_FILE, JOURNEY_DESIGN, SPIN
 
@@ -50,15 +47,8 @@ def write_explorer(job: Job, emulator: TouchdownEmulator) -> None:
         "time_limit": 0.0,
     }
     tables = tables_of_refits(emulator.refits, bound)
-    save_explorer(job.folder / TOUCHDOWN_EXPLORER_FILE, replace(tables, attitude=_attitude(job.study, emulator.terms)))
-
-
-def _attitude(study: Study, terms: AttitudeTerms | None) -> ExplorerAttitude | None:
-    if terms is None:
-        return None
-    names = tuple(f"{PREFIX}{name}" for name in terms.ranges)
-    sides = {side_words(study.lander, side): downs for side, downs in directions_of_sides(study.lander).items()}
-    return ExplorerAttitude(names, terms.axes.tolist(), terms.has_sides, terms.is_cube, sides)
+    attitude = explorer_attitude(job.study, [name for name in emulator.inputs if name.startswith(PREFIX)])
+    save_explorer(job.folder / TOUCHDOWN_EXPLORER_FILE, replace(tables, attitude=attitude))
 
 
 def write_reason(job: Job, why: str) -> None:

@@ -1,7 +1,7 @@
 """The emulator of all touchdowns of a study's journeys."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,8 +9,15 @@ import numpy as np
 from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import AttitudeTerms
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
-from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_inputs_of, attitude_terms, named_terms
-from lithobrake.pipeline.first_touchdown.emulator import RIDERS, DrawnLandings, fitted, inputs_met, outputs_of_runs
+from lithobrake.pipeline.design.lander_attitude import PREFIX, attitude_terms, named_terms
+from lithobrake.pipeline.first_touchdown.emulator import (
+    RIDERS,
+    DrawnLandings,
+    fitted,
+    inputs_met,
+    outputs_of_runs,
+    with_attitude,
+)
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import EnergyBound, energy_bound, height_of_beds
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -191,11 +198,6 @@ def _inputs(job: Job, runs: DesignRuns) -> "dict[str, Distribution]":
     terms = attitude_terms(job.study)
     of_attitude = {} if terms is None else terms.ranges
     return found | {f"{PREFIX}{name}": Uniform(*ends) for name, ends in of_attitude.items()}
-
-
-def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
-    terms = attitude_terms(study)
-    return runs if terms is None else replace(runs, inputs={**runs.inputs, **attitude_inputs_of(terms, runs.inputs)})
 
 
 def _why_none(study: Study, runs: DesignRuns) -> str | None:

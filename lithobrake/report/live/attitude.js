@@ -3,9 +3,10 @@
 // lithobrake.geometry.attitude_terms has them.
 
 class Attitude {
-  // inputs: places of the terms among the inputs; axes [axis_count][3] of the lander; hasSides, isCube: as in Python.
-  constructor({ inputs, axes, hasSides, isCube }) {
-    Object.assign(this, { inputs, axes, hasSides, isCube, downs: [] });
+  // inputs: places of the terms among the inputs; axes [axis_count][3] of the lander; hasSides, isCube: as in Python;
+  // drawn: terms of the attitudes of the study, where it has not any.
+  constructor({ inputs, axes, hasSides, isCube, drawn }) {
+    Object.assign(this, { inputs, axes, hasSides, isCube, drawn, downs: [] });
   }
 
   // Normal of the ground and direction of travel, seen from the lander, by three uniform numbers: in any attitude, or
@@ -37,7 +38,7 @@ class Attitude {
 
   // Put the germs of the terms of an attitude, by three uniform numbers, among those of the inputs.
   into(germs, law, uniforms) {
-    const terms = this.terms(...this.ways(...uniforms));
+    const terms = this.drawn ? this.drawn[Math.floor(uniforms[0] * this.drawn.length)] : this.terms(...this.ways(...uniforms));
     this.inputs.forEach((input, k) => { germs[input] = law.germOf(input, terms[k]); });
   }
 }

@@ -144,7 +144,7 @@ function startExplorer(holder) {
     button.addEventListener("click", () => { controls.forEach((one) => one.reset(low, high)); changed(); });
     return button;
   };
-  const attitude = explorer.attitude ? [attitudeControl(explorer, changed)] : [];
+  const attitude = explorer.attitude && !explorer.attitude.drawn ? [attitudeControl(explorer, changed)] : [];
   holder.querySelector(".controls").append(...attitude, ...Array.from(controls.values(), (one) => one.box),
     element("p", { className: "buttons" }, set("The whole law", 0, 1), set("All at their medians", 0.5, 0.5)));
   addEventListener("resize", changed);

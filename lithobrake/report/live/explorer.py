@@ -77,10 +77,11 @@ def explorer_sections(data: PageData) -> list[LiveSection]:
     )
     fitted = data.expansion if model == MODEL else None
     over_beds = fitted is None and data.has_interval
-    moved = list(explorer.input_names if fitted is None else fitted.results.kept_inputs)
+    free = [name for name in explorer.input_names if name not in explorer.attitude_inputs]
+    moved = free if fitted is None else list(fitted.results.kept_inputs)
     words = (
         f"Move the two ends of an input range: this page evaluates the {model} of the first touchdown for all soils in "
-        f"it, weighted by their input distribution. {_fixed(explorer, moved)}"
+        f"it, weighted by their input distribution. {_fixed(explorer, moved)}{_attitudes(explorer)}"
     )
     bands = (
         f"{_fits(model, explorer)} residuals that fall on other runs; no other bed."
@@ -119,8 +120,16 @@ def explorer_section(
 
 def _fixed(explorer: ExplorerTables, moved: Sequence[str]) -> str:
     """What is said of the inputs without sliders."""
-    others = [input_words(name) for name in explorer.input_names if name not in moved]
+    others = [input_words(name) for name in explorer.input_names if name not in (*moved, *explorer.attitude_inputs)]
     return f"Removed by the screening and always over their whole distribution: {listing(others)}. " if others else ""
+
+
+def _attitudes(explorer: ExplorerTables) -> str:
+    """Over which attitudes the first touchdowns are, in a sentence; nothing where their emulator reads none."""
+    if explorer.attitude is None:
+        return ""
+    drawn = "uniform over all rotations, or have one side toward the ground"
+    return f"Attitudes are {drawn if explorer.attitude.drawn is None else 'those of the runs'}. "
 
 
 def emulator_bands(explorer: ExplorerTables, over_beds: bool) -> str:
@@ -176,6 +185,7 @@ def _attitude(found: ExplorerAttitude | None, names: Sequence[str]) -> dict[str,
         "axes": found.axes,
         "hasSides": found.has_sides,
         "isCube": found.is_cube,
+        "drawn": found.drawn,
         "choices": [{"words": "any", "downs": []}, *({"words": w, "downs": d} for w, d in found.sides.items())],
     }
 

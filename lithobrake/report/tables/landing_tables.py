@@ -214,7 +214,11 @@ def inputs_table(data: PageData) -> PageTable:
     keys = {"impact point": "impact.region", "azimuth": "impact.azimuth_deg", "attitude": "impact.orientation"}
     named = {row[1] for row in rows}
     drawn = [words for words in drawn_things(data.study) if not (words == "impact point" and "impact.place.x" in named)]
-    rows += [[words, keys[words], "uniform", "randomised in each run", ""] for words in drawn]
+    significant = {"attitude"} if any(name.startswith("attitude.") for name in found) else set()
+    rows += [
+        [words, keys[words], "uniform", "randomised in each run", "yes" if words in significant else ""]
+        for words in drawn
+    ]
     if emulator is None:
         return PageTable("Sampled inputs", INPUT_COLUMNS, [row[:-1] for row in rows])
     note = notes.significant_inputs(data.level, has_any=bool(found))

@@ -232,3 +232,14 @@ return [all([]), all([[0, 0, 1], [0, 0, -1]])];"""
     assert np.cov(terms.T) == pytest.approx(covariance, abs=0.03)
     assert np.abs(pointed[:, 0]) == pytest.approx(np.tile([0.0, 0.0, 1.0], (4000, 1)), abs=EXACT)
     assert pointed[:, 0, 2].mean() == pytest.approx(0.0, abs=0.06)
+
+
+@needs_node
+def test_attitudes_of_a_pointed_lander_are_those_that_are_given() -> None:
+    facts = {"inputs": [2, 0], "axes": PRISM.axes.tolist(), "hasSides": False, "isCube": False}
+    drawn = [[0.9, 0.1], [0.8, -0.2], [0.7, 0.3]]
+    program = """const attitude = new Attitude(given.facts), law = { germOf: (input, value) => 10 * input + value };
+return given.uniforms.map((one) => { const germs = [0, 5, 0]; attitude.into(germs, law, one); return germs; });"""
+    given = {"facts": facts | {"drawn": drawn}, "uniforms": [[0.1, 0.9], [0.5, 0.0], [0.999, 0.5]]}
+    found = answer_of(("live/attitude.js",), program, given)
+    assert found == [pytest.approx([along, 5, 20.0 + upright]) for upright, along in drawn]
