@@ -12,6 +12,7 @@ from scipy import linalg, special, stats
 from lithobrake.chaos.design import from_uniforms, sobol_sequence
 from lithobrake.chaos.distributions import Distribution, Normal
 from lithobrake.chaos.numerical_distributions import checked_inputs
+from lithobrake.chaos.storage import inputs_to_json
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array
@@ -106,8 +107,10 @@ class GaussianCopula:
 
 
 class ShapleyEffects(NamedTuple):
-    """Shares of the variance, whose sum is 1: names of inputs and groups, and for each and each output its share and
-    the standard error of sampling, [name_count, output_count] ([name_count] for a one-dimensional y).
+    """Shares of the variance, whose sum is 1, or 0 where nothing varies.
+
+    names: of inputs and groups; share, error: of each for each output, and the standard error of sampling,
+    [name_count, output_count] ([name_count] for a one-dimensional y).
     """
 
     names: list[str]
@@ -130,12 +133,13 @@ def shapley_effects(
     explain together is shared between them. Of independent inputs this is a value between the first-order and the total
     index. groups: name -> inputs that count as one, such as those of one covariance; the others stand alone. Every set
     of inputs is drawn `count` times with the rest given the set. Scatter about the expansion is left out.
-    Raises ValueError for inputs of other names, groups that share inputs, and more than 10 inputs and groups.
+    Raises ValueError for inputs of other names or laws, groups that share inputs, and more than 10 inputs and groups.
     Source: [Owen-2014]; [Song-2016].
     """
-    if list(copula.inputs) != surrogate.input_names:
+    if inputs_to_json(copula.inputs) != inputs_to_json(surrogate.inputs):
         raise ValueError(
-            f"the copula has the inputs {', '.join(copula.inputs)}: give it those of the expansion in order"
+            f"the copula has the inputs {', '.join(copula.inputs)}: give it those of the expansion, with their laws, "
+            "in order"
         )
     players = _players(surrogate, groups or {})
     columns, random = list(players.values()), random_numbers(seed)

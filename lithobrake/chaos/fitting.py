@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.chaos import degree_selection
-from lithobrake.chaos.basis import multi_index_set
+from lithobrake.chaos.basis import multi_index_set, points_of
 from lithobrake.chaos.dependence import dependent_inputs
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.gaussian_process import GaussianProcess, expansion_of, families_for, fit_process, fresh_germs
@@ -18,6 +18,7 @@ from lithobrake.chaos.sparse_regression import is_structured, solve_sparse
 from lithobrake.chaos.storage import data_hash
 from lithobrake.chaos.surrogate import Surrogate
 from lithobrake.chaos.training_data import Training, checked_training, one_thread
+from lithobrake.vocabulary.array_types import Array
 
 # A process costs the cube of the number of points; with more of them least squares is accurate enough.
 PROCESS_LIMIT = 2000
@@ -153,7 +154,7 @@ def fit(
         method = "ols"
     _check_request(degree, method, max_degrees, weights)
     training = checked_training(inputs, x, y, output_names=output_names, weights=weights)
-    together = _told_together(training)
+    together = _told_together(training, np.unique(points_of(training.inputs, x), axis=0))
     outputs = degree_selection.with_progress(range(training.y.shape[1]), progress)
     extra: dict[str, Any] = {}
     if method is None:
@@ -172,9 +173,12 @@ def fit(
     return _assembled(training, solutions, extra | together)
 
 
-def _told_together(training: Training) -> dict[str, Any]:
-    """For the report the pairs of inputs that depend on each other in the runs, with a warning where there are any."""
-    pairs = [] if training.weights is not None else dependent_inputs(training.inputs, training.x)
+def _told_together(training: Training, points: Array) -> dict[str, Any]:
+    """For the report the pairs of inputs that depend on each other in the runs, with a warning where there are any.
+
+    points [count, input_count]: those of all runs, missing ones too, each once.
+    """
+    pairs = [] if training.weights is not None else dependent_inputs(training.inputs, points)
     if pairs:
         worst = max(pairs, key=lambda pair: abs(pair[2]))
         warnings.warn(

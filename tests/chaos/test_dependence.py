@@ -139,6 +139,9 @@ def test_other_inputs_and_too_many_are_refused() -> None:
     surrogate, copula = linear()
     with pytest.raises(ValueError, match="the copula has the inputs modulus, friction, speed: give it those of the"):
         shapley_effects(surrogate, GaussianCopula(INPUTS, RANKS))
+    wider = {name: Normal(0.0, 2.0 * std) for name, std in zip("abc", STDS, strict=True)}
+    with pytest.raises(ValueError, match="the copula has the inputs a, b, c: give it those of the expansion, with"):
+        shapley_effects(surrogate, GaussianCopula(wider, np.eye(3)))
     with pytest.raises(ValueError, match="no input is named 'd'"):
         shapley_effects(surrogate, copula, groups={"g": ["d"]})
     with pytest.raises(ValueError, match="count is 1, "):
@@ -163,15 +166,27 @@ def test_a_fit_says_which_inputs_depend_on_each_other() -> None:
     assert pair[2] == pytest.approx(0.6, abs=0.1)
 
 
-@pytest.mark.parametrize("design", ["grid", "sequence", "hypercube", "few"])
+@pytest.mark.parametrize("design", ["grid", "sequence", "hypercube", "few", "repeated"])
 def test_designs_of_independent_inputs_raise_no_word(design) -> None:
     x = {
         "grid": lambda: tensor_grid(INPUTS, 2),
         "sequence": lambda: sobol_sequence(INPUTS, 50),
         "hypercube": lambda: latin_hypercube(INPUTS, 30),
         "few": lambda: sobol_sequence(INPUTS, 4),
+        # Runs of one point say nothing of the design.
+        "repeated": lambda: np.repeat(sobol_sequence(INPUTS, 20, seed=2), 20, axis=0),
     }[design]()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         surrogate = fit(INPUTS, x, x[:, 1], degree=0)
     assert surrogate.report["dependent_inputs"] == []
+
+
+def test_missing_runs_make_no_inputs_dependent() -> None:
+    """Where runs are missing by the sum of two inputs, those that are left would look correlated."""
+    inputs = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
+    x = sobol_sequence(inputs, 128)
+    y = np.where(x.sum(axis=1) < 0.8, np.nan, x[:, 0])
+    left = x[np.isfinite(y)]
+    assert stats.spearmanr(left).statistic < -0.3
+    assert fit(inputs, x, y, degree=1).report["dependent_inputs"] == []

@@ -28,6 +28,7 @@ from soil import RecordedSoil
 
 import lithobrake
 from lithobrake.smallbody import Body
+from lithobrake.study import StudySource
 
 TABLE = "reliable_sites.csv"
 RESTITUTIONS = (0.5, 0.6, 0.7, 0.8, 0.9)
@@ -129,8 +130,9 @@ def hard_rows(body: Body, release: str, restitution: float, distances: tuple[flo
 
 def soil_rows(body: Body, folder: Path, distances: tuple[float, ...]) -> list[Row]:
     """Rows of each kind of ground of a finished study, and over all by their weights, at the speed of most at rest."""
-    kinds = lithobrake.open_study(folder).results.grounds
-    soils = {name: RecordedSoil.of_study(folder, number, NEAR) for number, name in enumerate(kinds)}
+    study = lithobrake.open_study(folder)
+    kinds, known = study.results.grounds, list(StudySource.read(folder / "study.toml").study.ground.kind)
+    soils = {name: RecordedSoil.of_study(folder, known.index(name), NEAR) for name in kinds}
     slow = SPEEDS[SPEEDS < FASTEST]
     up, speed = np.repeat(directions(), len(slow), axis=0), np.tile(slow, len(LONGITUDES))
     rows = []
