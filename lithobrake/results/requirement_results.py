@@ -37,7 +37,7 @@ class RequirementEdge:
 class SimulatedCorner:
     """A corner of what is admissible, by simulated landings and by the emulator; agrees: None without intervals.
 
-    landings, emulator: as means over beds, with intervals of one level, that of an answer, whatever the requirement has.
+    landings, emulator: as means over beds, with intervals of one level, whatever that of the requirement is.
     """
 
     values: tuple[float, ...]

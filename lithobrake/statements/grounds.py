@@ -59,7 +59,8 @@ def finer(found: "FinerGround | None") -> list[str]:
 def strip_note(*, has_finest: bool, has_one: bool) -> str:
     """Bars, marks and rows of the answers on each ground.
 
-    has_finest: whether a row is of the ground finer than any bed; has_one: whether the last is of one ground throughout.
+    has_finest: whether a row is of the ground finer than any bed; has_one: whether the last row is of one ground
+    throughout.
     """
     finest = "; the finest is part of the kinds above, its journeys on the coarser beds that stand for it"
     last = "; in the last row of one ground throughout" if has_one else ""

@@ -249,9 +249,9 @@ def requirement_files(folder: Path, *, simulated: bool) -> tuple[Path, ...]:
 
 
 def write_requirement(found: Requirement, folder: Path) -> tuple[Path, ...]:
-    """Write the tables and the picture of a requirement into a folder, and remove corners of another one that are there.
+    """Write the tables and the picture of a requirement into a folder; returns the files.
 
-    Returns the files.
+    Corners of another requirement that are there are removed.
     """
     from lithobrake.report.figures.requirement_figure import requirement_figure
     from lithobrake.report.figures.style import figure_style
