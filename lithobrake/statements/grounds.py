@@ -62,9 +62,9 @@ def strip_note(*, has_finest: bool, has_one: bool) -> str:
     has_finest: whether a row is of the ground finer than any bed; has_one: whether the last row is of one ground
     throughout.
     """
-    finest = "; the finest is part of the kinds above, its journeys on the coarser beds that stand for it"
     last = "; in the last row of one ground throughout" if has_one else ""
-    return f"Marks: values; bars: {intervals()} of the mean over beds of that ground{finest * has_finest}{last}."
+    finest = "; the finest is part of the kinds above, its journeys on the coarser beds that stand for it"
+    return f"Marks: values; bars: {intervals()} of the mean over beds of that ground{last}{finest * has_finest}."
 
 
 def kind_words(weight: float, ends: tuple[float, float]) -> str:

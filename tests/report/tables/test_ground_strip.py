@@ -30,8 +30,8 @@ def test_the_note_speaks_of_the_rows_that_are_there(asked: PageData) -> None:
     # Only what the page begins with has no words here.
     assert [column.shown[-1] == "" for column in strip.columns] == [True, False, False]
     assert strip.note == (
-        "Marks: values; bars: 90 % intervals of the mean over beds of that ground; the finest is part of the kinds "
-        "above, its journeys on the coarser beds that stand for it; in the last row of one ground throughout."
+        "Marks: values; bars: 90 % intervals of the mean over beds of that ground; in the last row of one ground "
+        "throughout; the finest is part of the kinds above, its journeys on the coarser beds that stand for it."
     )
     kinds = ground_strip(replace(data, results=replace(data.results, finer_ground=None, over_grounds=None)))
     assert kinds is not None
