@@ -13,6 +13,7 @@ from lithobrake.vocabulary.estimate import LEVEL, Estimate
 from lithobrake.vocabulary.requirement import AdmissibleEdge, Verdict
 
 FEW = "fewer than two of the values have a result"
+GAP = "between values with a result there are some without"
 RISES_AND_FALLS = "the probability both rises and falls with it by more than its intervals allow"
 
 
@@ -44,25 +45,30 @@ def with_grounds(mean: Estimate, met: Array, bed: np.ndarray, level: float = LEV
 def admissible_edge(values: Sequence[float], found: Sequence[Estimate | None], required: float) -> AdmissibleEdge:
     """The edge of the values of a parameter, in ascending order, at which a probability is as large as is required.
 
-    found: the probability at each value with its interval; None where there is no result. Probabilities and both ends
-    of their intervals are taken as one monotone function each, the nearest in least squares, and linear between values.
-    No edge where these leave the interval of a value: the admissible values then have more than one.
+    found: the probability at each value with its interval; None where there is no result. The edge is one of the values
+    with a result, and there is none where these have others between them: nothing is known across a gap. Probabilities
+    and both ends of their intervals are taken as one monotone function each, the nearest in least squares, and linear
+    between values. No edge where these leave the interval of a value: the admissible values then have more than one.
     Source: [Barlow-1972] (isotonic regression).
     """
-    known = [(value, one, one.bounds) for value, one in zip(values, found, strict=True) if one and one.bounds]
-    if len(known) < 2:
+    places = [(place, one, one.bounds) for place, one in enumerate(found) if one and one.bounds]
+    if len(places) < 2:
         return AdmissibleEdge(False, why=FEW)
-    x, p = np.array([value for value, _, _ in known]), np.array([one.value for _, one, _ in known])
-    lower, upper = np.array([bounds for _, _, bounds in known]).T
+    first, last = places[0][0], places[-1][0]
+    known = values[first], values[last]
+    if len(places) <= last - first:
+        return AdmissibleEdge(False, why=GAP, known=known)
+    x, p = np.array(values[first : last + 1], dtype=float), np.array([one.value for _, one, _ in places])
+    lower, upper = np.array([bounds for _, _, bounds in places]).T
     curves = np.array([p, lower, upper])
     fits = {falls: np.array([_monotone(curve, falls=falls) for curve in curves]) for falls in (True, False)}
     # Of a probability that stays, the ends of its interval may still say which way it goes.
     falls = bool(np.sum((fits[True] - curves) ** 2) <= np.sum((fits[False] - curves) ** 2))
     fit = fits[falls]
     if ((fit[0] < lower) | (fit[0] > upper)).any():
-        return AdmissibleEdge(falls, why=RISES_AND_FALLS)
+        return AdmissibleEdge(falls, why=RISES_AND_FALLS, known=known)
     value, sure, possible = (_crossing(x, curve, required, falls=falls) for curve in fit)
-    return AdmissibleEdge(falls, value, sure, possible)
+    return AdmissibleEdge(falls, value, sure, possible, known=known)
 
 
 def _monotone(y: Array, *, falls: bool) -> Array:

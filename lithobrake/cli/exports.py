@@ -210,7 +210,8 @@ def requirement(
     from lithobrake.progress import study_progress
 
     grid = pipeline.grid_of_ranges(over)
-    written = () if force else pipeline.requirement_files(folder, simulated=check > 0)
+    # With corners also where none are asked for: those of another requirement are removed.
+    written = () if force else pipeline.requirement_files(folder, simulated=True)
     # Before the landers are followed, which takes minutes.
     refuse_existing(written, "move it away, or replace it with --force")
     with study_progress() as shown:

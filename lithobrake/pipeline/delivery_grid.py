@@ -161,26 +161,35 @@ def region_corners(asked: Asked, deliveries: Sequence[RequiredDelivery]) -> tupl
 
 
 def simulate_corners(
-    job: Job, asked: Asked, deliveries: Sequence[RequiredDelivery], corners: Sequence[int], count: int
+    job: Job, asked: Asked, emulated: GridLanders, fitted: Refits, corners: Sequence[int], count: int
 ) -> tuple[SimulatedCorner, ...]:
-    """Simulate so many journeys at each corner; their first landers are those that the emulator has followed."""
+    """Simulate so many journeys at each corner; their first landers are those that the emulator has followed.
+
+    emulated: the landers of all deliveries by the emulator.
+    """
     options = [asked.options[one] for one in corners]
     delivered = option_landers(job.design, options, count)
     touchdown = WithLandings(job, delivered.begin, Unanswered(), sys.maxsize)
     landers = followed(job, delivered.begin, touchdown, "simulated journeys at the corners")
     nothing = np.full(len(delivered.begin.rows), "", dtype="<U1")
     found = GridLanders.of(job, delivered, landers, nothing, asked.state, len(corners))
-    return tuple(_simulated(job, found, row, deliveries[one]) for row, one in enumerate(corners))
+    simulated = []
+    for row, corner in enumerate(corners):
+        landings = _share_of_landings(job, found, row)
+        # Landings give the mean over beds: what one ground would give is another number.
+        emulator = emulated.probability(corner, fitted, landings.level, one_ground=False)
+        bounds = difference_bounds(landings, emulator)
+        agrees = None if bounds is None else bounds[0] <= 0.0 <= bounds[1]
+        simulated.append(SimulatedCorner(tuple(options[row].values()), count, landings, emulator, agrees))
+    return tuple(simulated)
 
 
-def _simulated(job: Job, found: GridLanders, row: int, delivery: RequiredDelivery) -> SimulatedCorner:
+def _share_of_landings(job: Job, found: GridLanders, row: int) -> Estimate:
+    """The probability by the simulated journeys at a corner, as a mean over beds. Raises ValueError for no outcome."""
     met = found.met[row]
     if not np.isfinite(met).any():
         raise ValueError(
             f"none of {len(met)} simulated journeys at a corner has a known outcome; allowed: landings that end; raise "
             "landing.time_limit, or correct the program that makes them"
         )
-    landings = share_estimate(met, found.bed[row], why=why_no_interval(job.study)).share
-    bounds = difference_bounds(landings, delivery.probability)
-    agrees = None if bounds is None else bounds[0] <= 0.0 <= bounds[1]
-    return SimulatedCorner(delivery.values, len(met), landings, delivery.probability, agrees)
+    return share_estimate(met, found.bed[row], why=why_no_interval(job.study)).share

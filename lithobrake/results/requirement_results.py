@@ -35,7 +35,10 @@ class RequirementEdge:
 
 @dataclass(frozen=True)
 class SimulatedCorner:
-    """A corner of what is admissible, by simulated landings and by the emulator; agrees: None without intervals."""
+    """A corner of what is admissible, by simulated landings and by the emulator; agrees: None without intervals.
+
+    landings, emulator: as means over beds, with intervals of one level, whatever that of the requirement is.
+    """
 
     values: tuple[float, ...]
     journeys: int

@@ -56,10 +56,15 @@ def finer(found: "FinerGround | None") -> list[str]:
     ]
 
 
-def strip_note(*, has_one: bool) -> str:
-    """Bars, marks and rows of the answers on each ground; has_one: whether the last is of one ground throughout."""
+def strip_note(*, has_finest: bool, has_one: bool) -> str:
+    """Bars, marks and rows of the answers on each ground.
+
+    has_finest: whether a row is of the ground finer than any bed; has_one: whether the last row is of one ground
+    throughout.
+    """
     last = "; in the last row of one ground throughout" if has_one else ""
-    return f"Marks: values; bars: {intervals()} of the mean over beds of that ground{last}."
+    finest = "; the finest is part of the kinds above, its journeys on the coarser beds that stand for it"
+    return f"Marks: values; bars: {intervals()} of the mean over beds of that ground{last}{finest * has_finest}."
 
 
 def kind_words(weight: float, ends: tuple[float, float]) -> str:

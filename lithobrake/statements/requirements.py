@@ -29,14 +29,14 @@ def requirement_statement(found: Requirement) -> str:
 
 
 def edge_statement(found: Requirement, one: RequirementEdge) -> str:
-    """Up to which value of a parameter, or from which on, a requirement is met."""
+    """Up to which of its values with a result a parameter meets a requirement, or from which on."""
     name, edge = found.names[one.along], one.edge
     pairs = [(key, value) for key, value in zip(found.names, one.values, strict=True) if value is not None]
     where = f", where {listing([f'{key} is {number(value)}' for key, value in pairs])}" if pairs else ""
-    if edge.why is not None:
+    if edge.why is not None or edge.known is None:
         return f"{name} has no edge: {edge.why}{where}."
-    values = found.grid[one.along]
-    kept, side = f"from {number(values[0])} to {number(values[-1])}", "up to" if edge.falls else "from"
+    (first, last), where = edge.known, f"{where}{_without_result(found.grid[one.along], edge.known)}"
+    kept, side = f"from {number(first)} to {number(last)}", "up to" if edge.falls else "from"
     if math.isinf(edge.value):
         is_met = (edge.value > 0.0) == edge.falls
         sure = edge.sure if is_met else edge.possible
@@ -45,11 +45,18 @@ def edge_statement(found: Requirement, one: RequirementEdge) -> str:
         if is_met:
             return f"{name} is admissible {kept}, with confidence {side} {number(sure)}{where}."
         return f"{name}: no value {kept} is admissible, and none beyond {number(sure)} can be{where}."
-    ends = [_end(found, one, value) for value in (edge.sure, edge.possible)]
+    ends = [_end(one, value) for value in (edge.sure, edge.possible)]
     return f"{name} is admissible {side} {number(edge.value)} (with confidence {ends[0]}, perhaps {ends[1]}){where}."
 
 
-def _end(found: Requirement, one: RequirementEdge, value: float) -> str:
+def _without_result(values: Sequence[float], known: tuple[float, float]) -> str:
+    """Where values of a parameter have no result; nothing where all have one."""
+    first, last = known
+    sides = [f"below {number(first)}"] * (values[0] < first) + [f"above {number(last)}"] * (last < values[-1])
+    return f"; no result {listing(sides)}" if sides else ""
+
+
+def _end(one: RequirementEdge, value: float) -> str:
     """An end of the interval of an edge; where it lies beyond the values, what that says of them."""
     if math.isfinite(value):
         return f"{'up to' if one.edge.falls else 'from'} {number(value)}"
@@ -57,11 +64,11 @@ def _end(found: Requirement, one: RequirementEdge, value: float) -> str:
 
 
 def simulated_statement(found: Requirement, one: SimulatedCorner) -> str:
-    """What simulated journeys give at a corner, beside the emulator."""
+    """What simulated journeys give at a corner, beside the emulator, both as means over beds at one level."""
     where = listing([f"{key} = {number(value)}" for key, value in zip(found.names, one.values, strict=True)])
     said = (
         f"Corner {where}: {with_interval(one.landings)} of {one.journeys} simulated journeys, the emulator "
-        f"{with_interval(one.emulator)}"
+        f"{with_interval(one.emulator)}, by {intervals(one.landings.level)} of the mean over beds"
     )
     return f"{said}." if one.agrees is None else f"{said}; they {'agree' if one.agrees else 'disagree'}."
 
@@ -78,12 +85,14 @@ def delivery_rows(found: Requirement) -> Table:
 
 
 def edge_rows(found: Requirement) -> Table:
-    """The table of the edges: titles, and a row for each; an edge beyond the values is -inf or inf."""
+    """The table of the edges: titles, and a row for each; an edge beyond the values with a result is -inf or inf."""
     titles = ["along", *_titles(found), "admissible", "edge", "edge_sure", "edge_possible", "why_none"]
+    titles += ["result_from", "result_to"]
     rows = (
         [found.names[one.along], *("" if value is None else value for value in one.values),
          "" if one.edge.why else "up to" if one.edge.falls else "from",
-         *(_blank(value) for value in (one.edge.value, one.edge.sure, one.edge.possible)), one.edge.why or ""]
+         *(_blank(value) for value in (one.edge.value, one.edge.sure, one.edge.possible)), one.edge.why or "",
+         *(one.edge.known or ("", ""))]
         for one in found.edges
     )  # fmt: skip
     return titles, rows

@@ -23,7 +23,8 @@ class AdmissibleEdge:
     falls: whether the probability falls with the parameter, so that smaller values are admissible; value: by the
     probability itself; sure, possible: by the end of its interval that is farther from, and nearer to, meeting the
     requirement. Infinite where there is no crossing within the values: on the side of these that is not admissible
-    (math.inf where `falls`) all of them meet it, on the other none does. why: there is no edge, in a sentence.
+    (math.inf where `falls`) all of them meet it, on the other none does. why: there is no edge, in a sentence. known:
+    the least and the largest value with a result, of which alone all this speaks; None where fewer than two have one.
     """
 
     falls: bool
@@ -31,3 +32,4 @@ class AdmissibleEdge:
     sure: float = math.nan
     possible: float = math.nan
     why: str | None = None
+    known: tuple[float, float] | None = None

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lithobrake.analysis import refit_interval
-from lithobrake.analysis.admissible_region import FEW, RISES_AND_FALLS, admissible_edge, verdict, with_grounds
+from lithobrake.analysis.admissible_region import FEW, GAP, RISES_AND_FALLS, admissible_edge, verdict, with_grounds
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.requirement import Verdict
 
@@ -37,9 +37,22 @@ def test_an_edge_beyond_the_values_is_infinite_on_the_side_that_says_so() -> Non
     assert (rising.falls, rising.value) == (False, -math.inf)
 
 
-def test_values_without_a_result_are_passed_over_and_one_alone_has_no_edge() -> None:
-    assert admissible_edge(X, [*told([0.9, 0.8]), None, None], 0.85).value == pytest.approx(1.5)
-    assert admissible_edge(X, [None, None, None, *told([0.9])], 0.85).why == FEW
+def test_an_edge_is_one_of_the_values_with_a_result_and_one_alone_has_none() -> None:
+    edge = admissible_edge(X, [*told([0.9, 0.8]), None, None], 0.85)
+    assert (edge.value, edge.known) == (pytest.approx(1.5), (1.0, 2.0))
+    above = admissible_edge(X, [None, None, *told([0.6, 0.5])], 0.9)
+    assert (above.falls, above.value, above.known) == (True, -math.inf, (3.0, 4.0))
+    assert admissible_edge(X, told([0.9, 0.8, 0.7, 0.6]), 0.85).known == (1.0, 4.0)
+    alone = admissible_edge(X, [None, None, None, *told([0.9])], 0.85)
+    assert (alone.why, alone.known) == (FEW, None)
+
+
+@pytest.mark.parametrize("last", [0.5, 0.95])
+def test_there_is_no_edge_across_values_without_a_result(last: float) -> None:
+    """Whether the probability crosses what is required in the gap or seems to stay above it, nothing is known there."""
+    edge = admissible_edge(X, [*told([0.99], 0.005), None, None, *told([last], 0.005)], 0.9)
+    assert (edge.why, edge.known) == (GAP, (1.0, 4.0))
+    assert math.isnan(edge.value)
 
 
 def test_chance_is_smoothed_and_what_it_cannot_be_is_no_edge() -> None:

@@ -102,9 +102,9 @@ def _found(job: Job, name: str, asked: Asked, lander_count: int, simulated_count
     if fitted.why is not None:
         raise ValueError(f"the study gives no interval, and a requirement is met by one. {fitted.why}")
     _refuse_unreachable(asked, fitted)
-    deliveries = required_deliveries(job, asked, follow_deliveries(job, asked, lander_count), fitted)
-    corners = region_corners(asked, deliveries)
-    units = input_units()
+    landers = follow_deliveries(job, asked, lander_count)
+    deliveries = required_deliveries(job, asked, landers, fitted)
+    corners, units = region_corners(asked, deliveries), input_units()
     return Requirement(
         name=name,
         condition=asked.state.text,
@@ -116,7 +116,7 @@ def _found(job: Job, name: str, asked: Asked, lander_count: int, simulated_count
         deliveries=deliveries,
         edges=requirement_edges(asked, deliveries),
         corners=corners,
-        simulated=simulate_corners(job, asked, deliveries, corners, simulated_count) if simulated_count else (),
+        simulated=simulate_corners(job, asked, landers, fitted, corners, simulated_count) if simulated_count else (),
         landers=lander_count,
         refits=REFIT_COUNT,
         beds=fitted.bed_count,
@@ -196,6 +196,13 @@ def _refuse_counts(study: Study, deliveries: int, landers: int, simulated: int) 
         raise ValueError(
             f"--landers is {landers}; allowed: multiples of {REFIT_COUNT} from {2 * REFIT_COUNT}; take 1000"
         )
+    beds = study.with_run_count(study.design.most_runs).bed_count
+    # On one lander a bed nothing tells grounds from chance.
+    if is_on_one_ground(study) and landers <= beds:
+        raise ValueError(
+            f"--landers is {landers}, and the study may have {beds} beds of unknown ground; allowed: more landers than "
+            f"beds; take {REFIT_COUNT * (2 * beds // REFIT_COUNT + 1)}"
+        )
     if landers * deliveries > MOST_LANDERS:
         raise ValueError(
             f"--landers {landers} for {deliveries} deliveries makes {landers * deliveries} landers; allowed: up to "
@@ -242,7 +249,10 @@ def requirement_files(folder: Path, *, simulated: bool) -> tuple[Path, ...]:
 
 
 def write_requirement(found: Requirement, folder: Path) -> tuple[Path, ...]:
-    """Write the tables and the picture of a requirement into a folder; returns the files."""
+    """Write the tables and the picture of a requirement into a folder; returns the files.
+
+    Corners of another requirement that are there are removed.
+    """
     from lithobrake.report.figures.requirement_figure import requirement_figure
     from lithobrake.report.figures.style import figure_style
 
@@ -251,6 +261,8 @@ def write_requirement(found: Requirement, folder: Path) -> tuple[Path, ...]:
         (*paths[:2], *paths[3:]), (delivery_rows(found), edge_rows(found), simulated_rows(found)), strict=False
     ):
         write_rows(path, titles, rows)
+    if not found.simulated:
+        (folder / CORNERS).unlink(missing_ok=True)
     with figure_style(), atomic_path(paths[2]) as draft:
         requirement_figure(found).savefig(draft, format="png", metadata={"Software": None})
     return paths

@@ -13,12 +13,13 @@ from lithobrake.vocabulary.number_words import with_interval
 
 
 def ground_strip(data: PageData) -> Strip | None:
-    """What the landers do on each kind of ground, on the finest, and on one of them; None for a study of one ground.
+    """What the landers do on each kind of ground, on the finest, and on one of them.
 
-    The fraction over all of them has no words here: the page begins with it.
+    None for a study of one ground, and of first touchdowns, whose page begins with another answer. The fraction at rest
+    over all grounds has no words here: the page begins with it.
     """
     results, journeys = data.results, data.journeys
-    if not results.grounds or journeys is None:
+    if not results.grounds or journeys is None or not data.to_rest:
         return None
     names = [(name, kind_words(one.weight, one.grain_size_m)) for name, one in results.grounds.items()]
     rows = [(one.at_rest.share, one.time_s, one.distance_m) for one in results.grounds.values()]
@@ -29,6 +30,7 @@ def ground_strip(data: PageData) -> Strip | None:
     if over is not None:
         names.append(("one of these", "unknown which"))
         rows.append((over.at_rest, over.time_s, over.distance_m))
+    has_finest = len(rows) > len(results.grounds) + (over is not None)
     size, unit = time_unit(journeys.rest)
     rests, times, distances = (list(one) for one in zip(*rows, strict=True))
     shares = [with_interval(one).replace(" %", "") for one in rests]
@@ -39,7 +41,7 @@ def ground_strip(data: PageData) -> Strip | None:
         _quantiles(f"median time [{unit}]", times, size),
         _quantiles("median distance [m]", distances, 1.0),
     ]
-    return Strip("By kind of ground", names, columns, strip_note(has_one=over is not None))
+    return Strip("By kind of ground", names, columns, strip_note(has_finest=has_finest, has_one=over is not None))
 
 
 def _quantiles(words: str, found: Sequence[Estimate], unit: float) -> StripColumn:

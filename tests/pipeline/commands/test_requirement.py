@@ -2,6 +2,7 @@
 
 import csv
 from copy import deepcopy
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -10,10 +11,18 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.cli import app
-from lithobrake.pipeline import find_requirement, grid_of_ranges, requirement_lines, write_requirement
+from lithobrake.pipeline import delivery_grid, find_requirement, grid_of_ranges, requirement_lines, write_requirement
 from lithobrake.pipeline.answer.emulated_ends import Refits
-from lithobrake.pipeline.delivery_grid import Asked, GridLanders, required_deliveries, requirement_edges
+from lithobrake.pipeline.commands import requirement
+from lithobrake.pipeline.delivery_grid import (
+    Asked,
+    GridLanders,
+    required_deliveries,
+    requirement_edges,
+    simulate_corners,
+)
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.journeys.delivery_options import option_landers
 from lithobrake.pipeline.runs.solver import function_identity
@@ -21,6 +30,7 @@ from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.report.figures.requirement_figure import requirement_figure
 from lithobrake.results.requirement_results import Requirement
 from lithobrake.study import StudySource
+from lithobrake.vocabulary.estimate import LEVEL
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import ERRORS
 from lithobrake.vocabulary.requirement import Verdict
@@ -88,7 +98,37 @@ def test_corners_lie_farthest_out_and_landings_agree(found: Requirement) -> None
     for one in found.simulated:
         assert one.journeys == 24
         assert one.landings.value > 0.85
+        assert one.landings.level == one.emulator.level == LEVEL
         assert one.agrees
+
+
+def test_landings_at_a_corner_are_compared_with_the_mean_of_the_emulator_over_beds(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A quarter of the landings on every bed meet it, and by the emulator three quarters: at 90 % these disagree.
+
+    The interval of one ground, at the 99.9 % of the requirement, would hold the difference.
+    """
+    emulated, fitted = half_of_beds()
+    landings = (np.arange(48) % 4 == 0).astype(float)
+    beds, nothing = np.arange(48) // 4, np.full((1, 48), "")
+    corner = GridLanders(landings[None], beds[None], beds[None], np.ones((1, 48), dtype=bool), nothing)
+    delivered = SimpleNamespace(begin=SimpleNamespace(rows=range(48)))
+    monkeypatch.setattr(delivery_grid, "option_landers", lambda *_: delivered)
+    for name in ("WithLandings", "followed", "why_no_interval"):
+        monkeypatch.setattr(delivery_grid, name, lambda *_: None)
+    monkeypatch.setattr(GridLanders, "of", lambda *_: corner)
+    job = SimpleNamespace(design=None, study=SimpleNamespace(ground=SimpleNamespace(unknown="everywhere")))
+    asked = Asked(LimitState.of("distance < 30"), 0.5, 0.999, {ERRORS: (1.0,)})
+    (one,) = simulate_corners(job, asked, emulated, fitted, [0], 48)
+    assert (one.values, one.journeys) == ((1.0,), 48)
+    assert (one.landings.value, one.emulator.value) == pytest.approx((0.25, 0.75))
+    assert one.landings.level == one.emulator.level == LEVEL
+    assert one.emulator.upper - one.emulator.lower < 0.25
+    assert one.agrees is False
+    of_one_ground = emulated.probability(0, fitted, asked.level, one_ground=True)
+    least, most = difference_bounds(one.landings, of_one_ground)
+    assert least < 0.0 < most
 
 
 def test_deliveries_differ_by_what_is_chosen_alone(source: StudySource) -> None:
@@ -138,6 +178,9 @@ def test_a_requirement_is_written_as_tables_and_picture(found: Requirement, tmp_
     assert float(lines[0]["edge"]) == found.edges[0].edge.value
     assert picture.stat().st_size > 1000
     assert len(corners.read_text(encoding="utf-8").splitlines()) == 1 + len(found.corners)
+    # Of another requirement, none of whose corners are simulated, these say nothing.
+    assert write_requirement(replace(found, simulated=()), tmp_path) == (table, edges, picture)
+    assert not corners.exists()
 
 
 def test_the_picture_has_a_cell_for_each_delivery_and_the_edge_with_both_ends(found: Requirement) -> None:
@@ -169,12 +212,17 @@ def test_deliveries_whose_impacts_are_beyond_the_training_range_have_no_result()
     assert 2.0 < edge.sure <= 3.0
 
 
-def test_on_unknown_ground_a_probability_is_that_of_one_ground() -> None:
-    """On half of the beds all landers meet it and on the others half do: one ground may have either."""
+def half_of_beds() -> tuple[GridLanders, Refits]:
+    """Landers of one delivery: on half of the beds all of them meet it, and on the others half do."""
     refit, bed = np.random.default_rng(6).permutation(960) % REFITS, np.arange(960) // 40
     met = np.where(bed % 2 == 0, 1.0, np.arange(960) % 2)
     landers = GridLanders(met[None], bed[None], refit[None], np.ones((1, 960), dtype=bool), np.full((1, 960), ""))
-    fitted = Refits(24, tuple([20] * 24), None)
+    return landers, Refits(24, tuple([20] * 24), None)
+
+
+def test_on_unknown_ground_a_probability_is_that_of_one_ground() -> None:
+    """One ground may have either share, whatever the mean over them is."""
+    landers, fitted = half_of_beds()
     mean, one = (landers.probability(0, fitted, 0.9, one_ground=flag) for flag in (False, True))
     assert mean.value == one.value == pytest.approx(0.75)
     assert mean.upper - mean.lower < 0.25
@@ -236,6 +284,31 @@ def test_simulated_corners_need_landings_that_end_at_rest(tmp_path: Path) -> Non
         find_requirement(source, tmp_path / "out", "near", GRID, lander_count=LANDERS, simulated_count=24, model=rest)
 
 
+@pytest.mark.parametrize(("unknown", "landers", "refused"), [
+    ("everywhere", 2 * REFITS, True), ("everywhere", 3 * REFITS, False), ("patchy", 2 * REFITS, False),
+])  # fmt: skip
+def test_of_unknown_ground_more_landers_than_beds_are_asked(
+    unknown: str, landers: int, refused: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 40 landers on 40 beds each has one, and none tells grounds from chance: said before anything runs."""
+    tables = resting_tables(tmp_path)
+    gravel = {"weight": 1.0, "grain_size": {"distribution": "log_uniform", "lower": 0.08, "upper": 0.4}}
+    tables |= {"ground": {"kind": {"gravel": gravel}, "unknown": unknown}, "bed": {"bed_count": 40}}
+    source = StudySource.of_tables(tables, function_identity(rest))
+    monkeypatch.setattr(requirement, "run_study", _runs)
+    said = r"--landers is 40, and the study may have 40 beds of unknown ground; allowed: more .*; take 100"
+    with pytest.raises(ValueError if refused else Ran, match=said if refused else None):
+        find_requirement(source, tmp_path / "out", "near", GRID, lander_count=landers, model=rest)
+
+
+class Ran(Exception):
+    """The study would have run."""
+
+
+def _runs(*_: Any, **__: Any) -> None:
+    raise Ran
+
+
 @pytest.mark.parametrize("text", [
     "delivery.speed", "delivery.speed=0.1", "delivery.speed=0.2:0.1", "delivery.speed=0.1:0.1", "delivery.speed=a:b",
     "delivery.speed=0.1:0.2:1", "delivery.speed=0.1:0.2:3:4", "delivery.speed=0.1:inf", "delivery.speed=0.1:0.2:x",
@@ -252,13 +325,15 @@ def test_ranges_are_spread_evenly() -> None:
         grid_of_ranges(["a=0:1", "a=0:2"])
 
 
-def test_a_requirement_that_is_there_is_not_replaced(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["requirement.csv", "requirement_corners.csv"])
+def test_a_requirement_that_is_there_is_not_replaced(name: str, tmp_path: Path) -> None:
+    """Nor are its corners removed where none are asked for."""
     CliRunner().invoke(app, ["new", str(tmp_path / "study")])
-    there = tmp_path / "out" / "requirement.csv"
+    there = tmp_path / "out" / name
     there.parent.mkdir(parents=True)
     there.write_text("mine", encoding="utf-8")
     words = ["requirement", str(tmp_path / "study.toml"), "near", "--over", "delivery.errors=1:2"]
     result = CliRunner().invoke(app, [*words, "--out", str(tmp_path / "out")])
     assert result.exit_code == 2
-    assert "requirement.csv exists" in result.stderr
+    assert f"{name} exists" in result.stderr
     assert there.read_text(encoding="utf-8") == "mine"
