@@ -20,8 +20,8 @@ def statement(found: Mapping[str, Any]) -> list[str]:
     said = [_worth(found)]
     if found["beyond"] > 0.0:
         said.append(
-            f"Left out are {percent(found['beyond'], 1)} of the drawn landers, whose arrival lies beyond the range of the "
-            f"study's touchdowns (most by {found['beyond_input']})."
+            f"Left out are {percent(found['beyond'], 1)} of the drawn landers, whose arrival lies beyond the range of "
+            f"the study's touchdowns (most by {found['beyond_input']})."
         )
     if found["not_used"]:
         said.append(f"Not used, as the emulator has no law of it for captured landers: {listing(found['not_used'])}.")

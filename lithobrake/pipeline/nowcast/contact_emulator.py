@@ -160,8 +160,8 @@ class FirstContacts:
             low, high = self.emulator.ranges[name]
             raise ValueError(
                 f"{where}: of {percent(share)} of the landers {name} lies outside what the study simulated; allowed: "
-                f"{low:.4g} to {high:.4g} for all but {percent(MOST_UNKNOWN)}; look at what is known of the arrival, or "
-                "widen the inputs of the study"
+                f"{low:.4g} to {high:.4g} for all but {percent(MOST_UNKNOWN)}; look at what is known of the arrival, "
+                "or widen the inputs of the study"
             )
 
     def ended_as(self, outcome: str | None) -> np.ndarray:

@@ -54,7 +54,7 @@ def checked_known(known: Mapping[str, float], study: Study, where: str) -> None:
     if known.get(IMPACT_SPEED, 0.0) < 0.0:
         raise ValueError(f"{where} has {known[IMPACT_SPEED]:g} m/s for {IMPACT_SPEED}; allowed: 0 or more")
     spin = math.hypot(*(known.get(name, 0.0) for name in SPIN))
-    if wrong := fast_spin(study, spin, lander_radius(study.lander)):
+    if spin > 0.0 and (wrong := fast_spin(study, spin, lander_radius(study.lander))):
         raise ValueError(f"{where} gives a spin of {wrong}")
 
 
