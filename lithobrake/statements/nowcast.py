@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from lithobrake.analysis.observed_draws import FEWEST
 from lithobrake.results.site_results import MOST_UNKNOWN
 from lithobrake.vocabulary.number_words import at_level, duration, listing, number, percent, span
 
@@ -50,7 +49,7 @@ def _refusal(found: Mapping[str, Any]) -> str:
         )
     return (
         f"The first contacts of {found['effective_count']:.0f} of {found['landers']} drawn landers are like this one, "
-        f"fewer than {FEWEST:.0f}, so nothing is said of ground and rest; give larger errors or leave an output out."
+        f"fewer than {found['fewest']:.0f}, so nothing is said of ground and rest; give larger errors or leave an output out."
     )
 
 

@@ -22,9 +22,6 @@ from lithobrake.pipeline.site_grid import share_of_known
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results.site_results import MOST_UNKNOWN
 from lithobrake.smallbody.landers import follow
-from lithobrake.study import Study
-from lithobrake.study.ground_checks import fast_spin
-from lithobrake.study.lander_checks import lander_radius
 from lithobrake.vocabulary.array_types import Array, Integers
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
@@ -46,16 +43,21 @@ ENDS = (0.5 - 0.5 * LEVEL, 0.5, 0.5 + 0.5 * LEVEL)
 FEWEST_JOURNEYS = 20.0
 
 
-def checked_known(known: Mapping[str, float], study: Study, where: str) -> None:
-    """Raise ValueError, with the file, for numbers that no arrival has."""
+def checked_known(known: Mapping[str, float], folder: StudyFolder, where: str) -> None:
+    """Raise ValueError, with the file, for numbers that no arrival has, and a spin beyond all simulated touchdowns."""
     for name, value in known.items():
         if not math.isfinite(value):
             raise ValueError(f"{where} has {value:g} for {name}; allowed: a finite number; leave out what is not known")
     if known.get(IMPACT_SPEED, 0.0) < 0.0:
         raise ValueError(f"{where} has {known[IMPACT_SPEED]:g} m/s for {IMPACT_SPEED}; allowed: 0 or more")
-    spin = math.hypot(*(known.get(name, 0.0) for name in SPIN))
-    if spin > 0.0 and (wrong := fast_spin(study, spin, lander_radius(study.lander))):
-        raise ValueError(f"{where} gives a spin of {wrong}")
+    if spin := math.hypot(*(known.get(name, 0.0) for name in SPIN)):
+        inputs = DesignRuns.load(folder, JOURNEY_DESIGN).inputs
+        fastest = float(np.linalg.norm([inputs[name] for name in SPIN if name in inputs], axis=0).max())
+        if spin > fastest:
+            raise ValueError(
+                f"{where} gives a spin of {spin:.4g} rad/s; allowed: at most {fastest:.4g} rad/s, as of the touchdowns "
+                "that the study simulated; write it in rad/s, or leave it out"
+            )
 
 
 def with_known(begin: Arrivals, known: Mapping[str, float], where: str) -> Arrivals:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from lithobrake.analysis import LEVEL, Estimate, Observation
-from lithobrake.analysis.observed_draws import ObservedDraws, observed_draws, weighted_quantiles
+from lithobrake.analysis.observed_draws import FEWEST, ObservedDraws, observed_draws, weighted_quantiles
 from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline.answer.dispersion_statistics import place_ellipses
 from lithobrake.pipeline.answer.emulated_ends import Refits
@@ -89,7 +89,7 @@ class NowcastStudy:
         contact = read_contact(observation)
         names = self.folder.read_json(TOUCHDOWN_EMULATOR_FILE)["output_names"]
         checked_contact(contact, contact_bounds(names), str(observation))
-        checked_known(contact.known, self.design.study, str(observation))
+        checked_known(contact.known, self.folder, str(observation))
         emulator = contact_emulator(self.design, self.folder, contact.outputs)
         return Nowcast.of(self, emulator, contact, str(observation))
 
@@ -242,6 +242,7 @@ class Nowcast:
             "beyond": float((self.contacts.beyond != "").mean()),
             "beyond_input": self.contacts.beyond_input(),
             "effective_count": self.draws.effective_count,
+            "fewest": FEWEST,
             "kernel_width": self.draws.width,
             "predictive_p_value": self.draws.p_value,
             "is_reliable": self.draws.is_reliable,
