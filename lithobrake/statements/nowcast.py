@@ -49,7 +49,8 @@ def _refusal(found: Mapping[str, Any]) -> str:
         )
     return (
         f"The first contacts of {found['effective_count']:.0f} of {found['landers']} drawn landers are like this one, "
-        f"fewer than {found['fewest']:.0f}, so nothing is said of ground and rest; give larger errors or leave an output out."
+        f"fewer than {found['fewest']:.0f}, so nothing is said of ground and rest; give larger errors or leave an "
+        "output out."
     )
 
 
