@@ -27,6 +27,7 @@ import lithobrake
 from lithobrake.analysis import LEVEL, Observation
 from lithobrake.analysis.observed_draws import observed_draws, weighted_quantiles
 from lithobrake.files.reading import read_table
+from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.nowcast.contact_emulator import FirstContacts, contact_emulator
 from lithobrake.pipeline.nowcast.contact_landers import ENDS, ContactLanders
@@ -99,7 +100,7 @@ class Truths:
             name: max(float(self.first.output(name)[row]) + error * random.standard_normal(), 1e-9)
             for name, error in errors.items()
         }
-        return Observation(outputs, errors)
+        return Observation(outputs, errors, outcome="clear")
 
 
 def cases(study: NowcastStudy, truths: Truths, seen: str, given: Any, *, is_own: bool) -> Iterator[tuple[str, Row]]:
@@ -108,7 +109,7 @@ def cases(study: NowcastStudy, truths: Truths, seen: str, given: Any, *, is_own:
     contacts = FirstContacts.drawn(emulator, study.arrivals(), COPIES)
     own_bed = contacts.begin.column("bed")[contacts.lander]
     values = {name: contacts.x[name][contacts.lander] for name in contacts.x if name.startswith(("ground.", "grain."))}
-    looked = 0
+    fitted, looked = Refits.of_journeys(study.design.study, study.journeys), 0
     for place, bed in enumerate(truths.bed.tolist()):
         allowed = np.ones(len(own_bed), dtype=bool)
         if is_own:
@@ -133,8 +134,11 @@ def cases(study: NowcastStudy, truths: Truths, seen: str, given: Any, *, is_own:
         for name, column in truths.numbers.items():
             if np.isfinite(column[place]):
                 found = landers.quantiles(name)
+                if None in found:
+                    yield f"{name}, refused", {"unreliable": 1.0}
+                    continue
                 yield name, judged(found, weighted_quantiles(column, np.ones(len(column)), ENDS), column[place])
-        yield "at_rest", brier(landers, np.isfinite(truths.numbers["time_s"]), place)
+        yield "at_rest", brier(landers.at_rest(fitted).value, np.isfinite(truths.numbers["time_s"]), place)
 
 
 def judged(after: list[Any], before: list[float], truth: float) -> Row:
@@ -143,10 +147,9 @@ def judged(after: list[Any], before: list[float], truth: float) -> Row:
     return {"held": float(held), "before": before[2] - before[0], "after": after[2] - after[0]}
 
 
-def brier(landers: ContactLanders, rests: np.ndarray, place: int) -> Row:
-    """Squared errors of the probability of rest: by the share of all landers, and by the nowcast."""
-    share = landers.rests.sum() / max((~landers.unknown).sum(), 1)
-    return {"before": (rests.mean() - rests[place]) ** 2, "after": (float(share) - rests[place]) ** 2}
+def brier(share: float, rests: np.ndarray, place: int) -> Row:
+    """Squared errors of the probability of rest: by the share of all landers, and by that of the nowcast."""
+    return {"before": (rests.mean() - rests[place]) ** 2, "after": (share - rests[place]) ** 2}
 
 
 def rows_of(name: str, seen: str, found: Iterator[tuple[str, Row]]) -> Iterator[Row]:

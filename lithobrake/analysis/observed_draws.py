@@ -12,11 +12,13 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.given_numbers import finite_number, random_numbers
+from lithobrake.vocabulary.given_numbers import finite_number, random_numbers, without_rounding
 
 # Of the standard deviation of the draws' coordinates: how wide the kernel may be; the narrowest that gives enough.
 WIDTHS = (0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4)
 ENOUGH, FEWEST = 400.0, 100.0
+# Of fewer draws that end as the run did no density can be told.
+FEWEST_POSSIBLE = 5
 # Draws that are compared with what was observed, and draws of the density by which they are.
 REPLICATES, DENSITY_DRAWS = 500, 4000
 # An observation that fewer draws than this are as unlikely as lies outside of what was simulated.
@@ -78,15 +80,18 @@ def observed_draws(
     units; an error of 0 leaves the kernel alone. possible [draw_count]: draws that end as the run did. source
     [draw_count]: what each was drawn from; draws of one source count as one.
     The kernel is normal in coordinates asinh(y / median), in which large outputs count by their ratio, and the errors
-    widen it. Raises ValueError where no draw is possible, for an output without draws, and for errors below 0.
+    widen it. Raises ValueError where hardly a draw is possible, for an output without draws, and for errors below 0.
     """
     for name, deviation in errors.items():
         finite_number(f"the error of {name}", deviation, at_least=0.0)
     if unknown := sorted(set(observed) - set(outputs)):
         raise ValueError(f"{unknown[0]} is observed, which no draw has; allowed: {', '.join(outputs) or 'none'}")
     there = possible & np.all([np.isfinite(outputs[name]) for name in observed], axis=0)
-    if not there.any():
-        raise ValueError(f"none of {len(possible)} draws ended as the observed run did; look at its outcome")
+    if (count := int(there.sum())) < FEWEST_POSSIBLE:
+        raise ValueError(
+            f"{count or 'none'} of {len(possible)} draws ended as the observed run did; allowed: at least "
+            f"{FEWEST_POSSIBLE}; look at its outcome"
+        )
     if not observed:
         weights = there / there.sum()
         return ObservedDraws(weights, 0.0, _effective(weights, source), None)
@@ -113,9 +118,11 @@ class _Scaled:
 
     @classmethod
     def of(cls, values: Array, seen: float, error: float) -> "_Scaled":
-        middle = float(np.median(np.abs(values))) or 1.0
-        coordinate = np.arcsinh(values / middle)
-        spread = float(coordinate.std()) or 1.0
+        known = without_rounding(values)
+        middle = float(np.median(np.abs(known))) or 1.0
+        coordinate = np.arcsinh(known / middle)
+        # The deviation of equal values is rounding, not 0.
+        spread = float(coordinate.std()) if np.ptp(known) > 0.0 else 1.0
         slope = 1.0 / np.hypot(middle, seen)
         return cls(coordinate / spread, float(np.arcsinh(seen / middle)) / spread, error * slope / spread)
 

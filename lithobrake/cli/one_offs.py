@@ -215,7 +215,8 @@ def infer(
         with arguments.shown_progress("inference") as progress:
             progress(0.0, "nowcast")
             said = nowcast_study(folder, bounce)["statement"]
-        written = ", ".join(str(folder / f"nowcast.{kind}") for kind in ("json", "csv", "png"))
+        made = (folder / f"nowcast.{kind}" for kind in ("json", "csv", "png"))
+        written = ", ".join(str(path) for path in made if path.is_file())
         arguments.tell([*said, f"Nowcast: {written}"])
         return
     study = InferredStudy.open(folder)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from lithobrake.results.site_results import MOST_UNKNOWN
 from lithobrake.vocabulary.number_words import at_level, duration, listing, number, percent, span
 
 # More of the standard deviation of the prior than this is not worth a sentence.
@@ -13,10 +14,17 @@ UNUSUAL = 0.05
 
 def statement(found: Mapping[str, Any]) -> list[str]:
     """found: of nowcast.json."""
-    said = [_worth(found)]
     if not found["is_reliable"]:
-        said.append(_refusal(found))
-    elif found["predictive_p_value"] is not None and found["predictive_p_value"] < UNUSUAL:
+        return [_refusal(found)]
+    said = [_worth(found)]
+    if found["beyond"] > 0.0:
+        said.append(
+            f"Left out are {percent(found['beyond'], 1)} of the drawn landers, whose arrival lies beyond the range of "
+            f"the study's touchdowns (most by {found['beyond_input']})."
+        )
+    if found["not_used"]:
+        said.append(f"Not used, as the emulator has no law of it for captured landers: {listing(found['not_used'])}.")
+    if found["predictive_p_value"] is not None and found["predictive_p_value"] < UNUSUAL:
         said.append(f"The contact is unusual: {percent(found['predictive_p_value'], 1)} of all draws are as unlikely.")
     if found["ground"]:
         said.append(_kinds(found))
@@ -27,7 +35,7 @@ def statement(found: Mapping[str, Any]) -> list[str]:
 def _worth(found: Mapping[str, Any]) -> str:
     worth = found["effective_count"]
     return (
-        f"Like this contact are {worth:.0f} independent first contacts out of {found['contacts']} drawn; they stand on "
+        f"The first contacts of {worth:.0f} of {found['landers']} drawn landers are like this one; they stand on "
         f"{found['journeys']} simulated journeys on {found['beds']} beds."
     )
 
@@ -36,10 +44,14 @@ def _refusal(found: Mapping[str, Any]) -> str:
     outside = found["predictive_p_value"] is not None and found["predictive_p_value"] < UNUSUAL
     if outside:
         return (
-            "The contact lies outside what the study simulated, so nothing below has an interval; look at units and "
-            "errors, or widen the inputs of the study."
+            "The contact lies outside what the study simulated, so nothing is said of ground and rest; look at units "
+            "and errors, or widen the inputs of the study."
         )
-    return "Too few draws resemble it, so nothing below has an interval; give larger errors or leave an output out."
+    return (
+        f"The first contacts of {found['effective_count']:.0f} of {found['landers']} drawn landers are like this one, "
+        f"fewer than {found['fewest']:.0f}, so nothing is said of ground and rest; give larger errors or leave an "
+        "output out."
+    )
 
 
 def _kinds(found: Mapping[str, Any]) -> str:
@@ -74,7 +86,8 @@ def _inputs(found: Mapping[str, Any]) -> list[str]:
 def _number(one: Mapping[str, Any], unit: str, level: float) -> str:
     lower, middle, upper = one["after"]
     blank = f" {unit}" if unit else ""
-    before = f"before {number(one['before'][0])} to {number(one['before'][2])}{blank}"
+    lowest, _, highest = one["before"]
+    before = "before not known" if lowest is None else f"before {number(lowest)} to {number(highest)}{blank}"
     own = "" if lower is None else f"{at_level(level)} {number(lower)} to {number(upper)}{blank}, "
     return f"{number(middle)}{blank} ({own}{before})"
 
@@ -84,6 +97,8 @@ def _rest(found: Mapping[str, Any]) -> list[str]:
     said = [f"At rest: {_share(rest['at_rest']['after'], level)}, before {percent(rest['at_rest']['before'])}."]
     if rest["unknown"] > 0.0:
         said.append(f"Ends that the emulator does not know: {percent(rest['unknown'], 1)}.")
+    if rest["unknown"] > MOST_UNKNOWN:
+        said.append(f"These are more than {percent(MOST_UNKNOWN)}, so time and place of rest are not told.")
     if rest["time_s"]["after"][1] is None:
         return said
     lower, middle, upper = rest["time_s"]["after"]

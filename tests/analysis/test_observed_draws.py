@@ -83,3 +83,13 @@ def test_what_no_draw_can_be_is_refused(effect: np.ndarray) -> None:
         weighed(effect, 5.0, -1.0)
     with pytest.raises(ValueError, match=r"none of 100000 draws ended as the observed run did"):
         observed_draws({"y": effect}, {"y": 5.0}, {}, ~every, own)
+    with pytest.raises(ValueError, match=r"1 of 100000 draws ended as the observed run did; allowed: at least 5"):
+        observed_draws({"y": effect}, {"y": 5.0}, {}, own == 3, own)
+
+
+def test_an_output_that_varies_by_rounding_weighs_nothing(cause: np.ndarray, effect: np.ndarray) -> None:
+    """0.1 + 0.2 is another number than 0.3; seen is what all draws have."""
+    alike = np.where(cause > 0.0, 0.1 + 0.2, 0.3)
+    every, own = np.full(COUNT, True), np.arange(COUNT)
+    both = observed_draws({"y": effect, "z": alike}, {"y": 6.0, "z": 0.3}, {"y": 0.5}, every, own)
+    assert np.allclose(both.weights, weighed(effect, 6.0, 0.5).weights)

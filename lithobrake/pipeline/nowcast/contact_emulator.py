@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
+from lithobrake.analysis.subset_simulation import ALSO_OF_CAPTURED
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_touchdown.emulator import (
@@ -23,16 +24,19 @@ from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.journeys.touchdown_emulator import DURATION, RISE, TouchdownEmulator
 from lithobrake.pipeline.runs.energy_bound import energy_bound
 from lithobrake.pipeline.study_folder import StudyFolder
+from lithobrake.results.site_results import MOST_UNKNOWN
 from lithobrake.smallbody.touchdown import Answers, ImpactStates
 from lithobrake.vocabulary.array_types import Array, Integers
 from lithobrake.vocabulary.constants import REFIT_COUNT
+from lithobrake.vocabulary.given_numbers import without_rounding
+from lithobrake.vocabulary.number_words import percent
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import IMPACT_INCIDENCE, IMPACT_SPEED
 from lithobrake.vocabulary.quantities import SPIN as SPIN_IN
 
 TITLE = "first contacts"
 # Numbers of a contact that a lander can measure, beside its motion after it.
-OF_CONTACT = ("contact_duration", "penetration", "peak_acceleration", "energy_lost")
+OF_CONTACT = ALSO_OF_CAPTURED
 
 
 def contact_bounds(output_names: Collection[str]) -> dict[str, tuple[float, float]]:
@@ -60,11 +64,11 @@ def contact_emulator(design: DrawnDesign, folder: StudyFolder, observed: Collect
     """
     found = TouchdownEmulator.read(design, folder)
     runs = found.refits[0].runs
-    riders = [runs.output_names[column] for column in runs.riders]
+    riders, varied = [runs.output_names[column] for column in runs.riders], without_rounding(runs.y)
     modelled = [
         name
         for name in riders
-        if name in observed and name in OF_CONTACT and np.ptp(runs.y[:, runs.output_names.index(name)]) > 0.0
+        if name in observed and name in OF_CONTACT and np.ptp(varied[:, runs.output_names.index(name)]) > 0.0
     ]
     if not modelled:
         return found
@@ -144,6 +148,22 @@ class FirstContacts:
         outputs[SPEED_CHANGE] = _change(outputs, at, lander)
         return cls(emulator, begin, lander, refit, outcome, outputs, _unit(axis), at, beyond)
 
+    def beyond_input(self) -> str | None:
+        """The input beyond whose range most of the landers are that are left out; None where none is."""
+        names, counts = np.unique(self.beyond[self.beyond != ""], return_counts=True)
+        return str(names[counts.argmax()]) if len(names) else None
+
+    def refuse_beyond(self, where: str) -> None:
+        """Raise ValueError, with the file, where so many landers are left out that the others do not stand for all."""
+        share, name = float((self.beyond != "").mean()), self.beyond_input()
+        if name is not None and share > MOST_UNKNOWN:
+            low, high = self.emulator.ranges[name]
+            raise ValueError(
+                f"{where}: of {percent(share)} of the landers {name} lies outside what the study simulated; allowed: "
+                f"{low:.4g} to {high:.4g} for all but {percent(MOST_UNKNOWN)}; look at what is known of the arrival, "
+                "or widen the inputs of the study"
+            )
+
     def ended_as(self, outcome: str | None) -> np.ndarray:
         """Which ended as an observed run did; None: left the surface."""
         ended: np.ndarray = self.outcome == (outcome or TouchdownOutcome.CLEAR)
@@ -155,7 +175,8 @@ class FirstContacts:
         found, left = Answers.unknown(len(which)), self.outcome[which] == TouchdownOutcome.CLEAR
         found.outcome[:] = self.outcome[which]
         motion = {name: self.outputs[name][which].copy() for name in (SPEED, ELEVATION, SPIN)}
-        for name in motion.keys() & observed.keys():
+        # In the order of the motion: that of a set changes from process to process, and with it each draw.
+        for name in (name for name in motion if name in observed):
             motion[name] = observed[name] + errors.get(name, 0.0) * random.standard_normal(len(which))
             motion[name] = np.clip(motion[name], 1e-9, STEEPEST if name == ELEVATION else np.inf)
         velocity = outgoing_velocity(motion[SPEED], motion[ELEVATION], self.outputs[AZIMUTH][which])

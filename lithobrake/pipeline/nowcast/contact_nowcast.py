@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.analysis import LEVEL, Estimate, Observation, share_estimate
-from lithobrake.analysis.observed_draws import ObservedDraws, observed_draws, weighted_quantiles
+from lithobrake.analysis import LEVEL, Estimate, Observation
+from lithobrake.analysis.observed_draws import FEWEST, ObservedDraws, observed_draws, weighted_quantiles
 from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline.answer.dispersion_statistics import place_ellipses
 from lithobrake.pipeline.answer.emulated_ends import Refits
@@ -21,9 +21,16 @@ from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
 from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.touchdown_emulator import ARRIVAL_TABLES, TouchdownEmulator, why_no_emulator
 from lithobrake.pipeline.nowcast.contact_emulator import FirstContacts, contact_bounds, contact_emulator
-from lithobrake.pipeline.nowcast.contact_landers import ENDS, ContactLanders, with_known
+from lithobrake.pipeline.nowcast.contact_landers import (
+    ENDS,
+    ContactLanders,
+    checked_known,
+    sides_down,
+    with_known,
+    with_scatter,
+)
 from lithobrake.pipeline.nowcast.observed_contact import checked_contact, is_record, read_contact
-from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.sequential_sampling import grown
 from lithobrake.pipeline.site import with_site_gravity
 from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder
 from lithobrake.statements.nowcast import statement
@@ -36,7 +43,6 @@ from lithobrake.vocabulary.quantities import (
     GROUND_SIZE,
     IMPACT_INCIDENCE,
     IMPACT_SPEED,
-    JOURNEY_DESIGN,
 )
 
 NOWCAST, TABLE, FIGURE = "nowcast.json", "nowcast.csv", "nowcast.png"
@@ -45,8 +51,6 @@ LANDERS, COPIES = 2000, 50
 FOLLOWED = 1000
 # Landers that are flown to the ground take a flight each.
 FLOWN_LANDERS = 1000
-# Simulated journeys that resemble the contact: fewer say nothing of sides.
-FEWEST_JOURNEYS = 20.0
 COLUMNS = ("sample", "refit", "end", "time_s", "latitude_deg", "longitude_deg", "distance [m]", "from_contact [m]")
 
 
@@ -78,13 +82,14 @@ class NowcastStudy:
         # As of an emulator of first touchdowns: a Python function that made them leaves no beds.
         if not all((folder / name).is_file() for name in bed_files(study)):
             study = study.with_function("of the folder's runs")
-        return cls(folder, DrawnDesign(study))
+        return cls(folder, grown(DrawnDesign(study), folder))
 
     def nowcast(self, observation: Path) -> "Nowcast":
         """What the first contact in a CSV file says. Raises ValueError for what cannot have been observed."""
         contact = read_contact(observation)
         names = self.folder.read_json(TOUCHDOWN_EMULATOR_FILE)["output_names"]
         checked_contact(contact, contact_bounds(names), str(observation))
+        checked_known(contact.known, self.folder, str(observation))
         emulator = contact_emulator(self.design, self.folder, contact.outputs)
         return Nowcast.of(self, emulator, contact, str(observation))
 
@@ -101,14 +106,16 @@ class NowcastStudy:
 
 @dataclass(frozen=True)
 class Nowcast:
-    """What a first contact says: contacts of the prior with weights, and landers followed from some of them."""
+    """What a first contact says: contacts of the prior with weights, and landers followed from some of them.
+
+    used: what the weights follow from: of a captured lander its outcome alone, as the emulator has no law of the rest.
+    """
 
     study: NowcastStudy
     contact: Observation
+    used: Observation
     contacts: FirstContacts
     draws: ObservedDraws
-    before: ContactLanders
-    after: ContactLanders
 
     @classmethod
     def of(
@@ -118,23 +125,31 @@ class Nowcast:
         contact: Observation,
         where: str,
     ) -> "Nowcast":
-        """Weigh first contacts by an observed one, and follow landers from those that are likely.
+        """Weigh first contacts by an observed one.
 
         where: the file of the contact, for messages.
         """
         begin = with_known(study.arrivals(), contact.known, where)
         contacts = FirstContacts.drawn(emulator, begin, COPIES)
-        if not len(contacts.lander):
-            name = contacts.beyond[0]
-            low, high = emulator.ranges[name]
-            raise ValueError(f"{where}: {name} lies outside what the study simulated; allowed: {low:.4g} to {high:.4g}")
-        possible = contacts.ended_as(contact.outcome)
-        draws = observed_draws(contacts.outputs, contact.outputs, contact.errors, possible, contacts.lander)
-        every = np.linspace(0, len(contacts.lander) - 1, min(FOLLOWED, len(contacts.lander))).astype(np.int64)
-        nothing = replace(contact, outputs={}, errors={})
-        before = ContactLanders.of(contacts, every, nothing, "before the first contact")
-        after = ContactLanders.of(contacts, draws.taken(FOLLOWED, 1), contact, "after the first contact")
-        return cls(study, contact, contacts, draws, before, after)
+        contacts.refuse_beyond(where)
+        is_captured = contact.outcome == TouchdownOutcome.CAPTURED
+        used = replace(contact, outputs={}, errors={}) if is_captured else contact
+        possible = contacts.ended_as(used.outcome)
+        draws = observed_draws(contacts.outputs, used.outputs, used.errors, possible, contacts.lander)
+        return cls(study, contact, used, contacts, draws)
+
+    @cached_property
+    def before(self) -> ContactLanders:
+        """Landers followed from all first contacts."""
+        count = len(self.contacts.lander)
+        every = np.linspace(0, count - 1, min(FOLLOWED, count)).astype(np.int64)
+        nothing = replace(self.used, outputs={}, errors={})
+        return ContactLanders.of(self.contacts, every, nothing, "before the first contact")
+
+    @cached_property
+    def after(self) -> ContactLanders:
+        """Landers followed from first contacts as often as those are likely."""
+        return ContactLanders.of(self.contacts, self.draws.taken(FOLLOWED, 1), self.used, "after the first contact")
 
     def values(self, name: str) -> Array:
         """An input of each first contact [contact_count]."""
@@ -147,13 +162,9 @@ class Nowcast:
         """Beds and journeys that intervals hold over."""
         return Refits.of_journeys(self.study.design.study, self.study.journeys)
 
-    def share(self, met: np.ndarray, least: np.ndarray | None = None) -> Estimate:
-        """Share of the followed landers that have met an event, over beds; least: those that have for certain."""
-        every = np.ones(len(met), dtype=bool)
-        one = self.fitted.share(met, every, self.after.refit)
-        if least is not None:
-            one = replace(one, lower=self.fitted.share(least, every, self.after.refit).lower)
-        return one if self.draws.is_reliable else Estimate(one.value, None, None)
+    def listed(self, one: Estimate) -> list[float | None]:
+        """Ends and value of a share of the followed landers, which are worth as many as the draws."""
+        return _listed(with_scatter(one, self.draws.effective_count))
 
     def kinds(self) -> dict[str, dict[str, Any]]:
         """The probability of each kind of ground before and after; empty for a study of one ground."""
@@ -162,10 +173,11 @@ class Nowcast:
             return {}
         kind = self.values(GROUND_KIND)
         before = np.bincount(kind.astype(int), minlength=len(ground.kind)) / len(kind)
-        own = kind[self.after.contact]
+        own, every = kind[self.after.contact], np.ones(len(self.after.contact), dtype=bool)
+        shares = (self.fitted.share(own == number, every, self.after.refit) for number in range(len(ground.kind)))
         return {
-            name: {"before": float(before[number]), "after": _listed(self.share(own == number))}
-            for number, name in enumerate(ground.kind)
+            name: {"before": float(before[number]), "after": self.listed(one)}
+            for number, (name, one) in enumerate(zip(ground.kind, shares, strict=True))
         }
 
     def inputs(self) -> dict[str, dict[str, Any]]:
@@ -182,11 +194,10 @@ class Nowcast:
             germ = laws[name].germ(values)
             spread = [float(np.sqrt(np.cov(germ, aweights=one, ddof=0))) for one in (self.draws.weights, even)]
             places = np.linspace(0, len(values) - 1, DRAWN).astype(np.int64)
-            after = self.draws.quantiles(values, ENDS)
             found[name] = {
                 "unit": "m" if name == GROUND_SIZE else units.get(name, ""),
                 "before": weighted_quantiles(values, even, ENDS),
-                "after": after if self.draws.is_reliable else [None, after[1], None],
+                "after": self.draws.quantiles(values, ENDS),
                 "sd_ratio": spread[0] / spread[1],
                 "prior": values[places].tolist(),
                 "points": values[self.draws.taken(DRAWN, 2)].tolist(),
@@ -197,68 +208,49 @@ class Nowcast:
         """Whether, when and where the lander rests, before and after."""
         after, site = self.after, self.study.design.site
         there = (after.numbers[f"{name}_deg"][after.rests] for name in ("latitude", "longitude"))
-        ellipse = place_ellipses(site, *there) if after.rests.sum() > 2 else None
+        ellipse = place_ellipses(site, *there) if after.answered and after.rests.sum() > 2 else None
         numbers = {}
         for name in ("time_s", "distance", "from_contact"):
-            middle = after.quantiles(name)
             numbers[name.replace("distance", "distance_m").replace("contact", "contact_m")] = {
                 "before": self.before.quantiles(name),
-                "after": middle if self.draws.is_reliable else [None, middle[1], None],
+                "after": after.quantiles(name),
             }
-        known = ~self.before.unknown
+        sides = sides_down(self.study.folder, self.study.journeys, self.used)
         return {
             "at_rest": {
-                "before": float(self.before.rests.sum() / max(known.sum(), 1)),
-                "after": _listed(self.share(after.rests | after.unknown, after.rests)),
+                "before": self.before.at_rest(self.fitted).value,
+                "after": self.listed(after.at_rest(self.fitted)),
             },
             "unknown": float(after.unknown.mean()),
             **numbers,
             "ellipse": None if ellipse is None else _ellipse(ellipse),
-            "sides": self.sides(),
-        }
-
-    def sides(self) -> dict[str, list[float | None]]:
-        """Share of the simulated landers at rest on each side, those weighted that met a like contact; or nothing."""
-        table, runs = self.study.journeys, DesignRuns.load(self.study.folder, JOURNEY_DESIGN)
-        first = np.flatnonzero(runs.inputs["touchdown"] == 0.0)
-        first = first[np.argsort(runs.inputs["journey"][first])]
-        if len(first) != len(table.end) or not any(table.face):
-            return {}
-        outputs = {name: runs.output(name)[first] for name in self.contact.outputs if name in runs.outputs}
-        possible = np.array(runs.outcomes)[first] == (self.contact.outcome or TouchdownOutcome.CLEAR)
-        possible &= table.rests & np.all([np.isfinite(values) for values in outputs.values()], axis=0)
-        if possible.sum() < FEWEST_JOURNEYS:
-            return {}
-        observed = {name: self.contact.outputs[name] for name in outputs}
-        alike = observed_draws(outputs, observed, self.contact.errors, possible, np.arange(len(first)))
-        own = alike.weights > 1e-6 * alike.weights.max()
-        if alike.effective_count < FEWEST_JOURNEYS or len(np.unique(table.bed[own])) < 2:
-            return {}
-        bed, weights, faces = table.bed[own], alike.weights[own], table.face[own]
-        return {
-            face: _listed(share_estimate((faces == face).astype(float), bed, weights=weights).share)
-            for face in sorted(set(faces.tolist()))
+            "sides": {side: _listed(one) for side, one in sides.items()},
         }
 
     def content(self) -> dict[str, Any]:
-        """What nowcast.json holds."""
+        """What nowcast.json holds: nothing of ground and rest where the draws do not stand for the contact."""
+        told = self.draws.is_reliable
         found = {
             "observed": dict(self.contact.outputs),
             "errors": dict(self.contact.errors),
             "known": dict(self.contact.known),
             "outcome": self.contact.outcome,
+            "not_used": sorted(set(self.contact.outputs) - set(self.used.outputs)),
             "level": LEVEL,
             "contacts": len(self.contacts.lander),
+            "landers": len(np.unique(self.contacts.lander)),
             "beyond": float((self.contacts.beyond != "").mean()),
+            "beyond_input": self.contacts.beyond_input(),
             "effective_count": self.draws.effective_count,
+            "fewest": FEWEST,
             "kernel_width": self.draws.width,
             "predictive_p_value": self.draws.p_value,
             "is_reliable": self.draws.is_reliable,
             "beds": len(np.unique(self.study.journeys.bed)),
             "journeys": len(self.study.journeys.end),
-            "ground": self.kinds(),
-            "inputs": self.inputs(),
-            "rest": self.rest(),
+            "ground": self.kinds() if told else {},
+            "inputs": self.inputs() if told else {},
+            "rest": self.rest() if told else None,
         }
         return {"statement": statement(found), **found}
 
@@ -284,13 +276,20 @@ def _ellipse(found: Any) -> dict[str, Any]:
 
 
 def nowcast_study(folder: Path, observation: Path) -> dict[str, Any]:
-    """Nowcast from a first contact, and write nowcast.json, nowcast.csv and a picture into the folder of the study."""
+    """Nowcast from a first contact, and write nowcast.json, nowcast.csv and a picture into the folder of the study.
+
+    Without an answer the table and the picture of another contact go, as they would stand for this one.
+    """
     from lithobrake.report.figures.nowcast_figure import write_nowcast_figure
 
     found = NowcastStudy.open(folder).nowcast(observation)
     content = found.content()
     write_json(folder / NOWCAST, content)
+    if not content["is_reliable"]:
+        for name in (TABLE, FIGURE):
+            (folder / name).unlink(missing_ok=True)
+        return content
     write_rows(folder / TABLE, COLUMNS, found.after.rows())
     ways = partial(offsets, found.study.design.site)
-    write_nowcast_figure(content, found.before.numbers, found.after.numbers, ways, folder / FIGURE)
+    write_nowcast_figure(content, found.before.told, found.after.told, ways, folder / FIGURE)
     return content

@@ -86,7 +86,7 @@ def _laws(axes: Axes, before: Array, after: Array) -> None:
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
     if not len(both):
-        axes.text(0.5, 0.5, "none rests", transform=axes.transAxes, ha="center", color=QUIET)
+        axes.text(0.5, 0.5, "none known", transform=axes.transAxes, ha="center", color=QUIET)
         return
     low, high = np.quantile(both, [0.5 - 0.5 * SHOWN, 0.5 + 0.5 * SHOWN]).tolist()
     is_wide = low > 0.0 and high > WIDE * low

@@ -1,24 +1,38 @@
 """A first contact in a study of journeys whose touchdowns follow a law that is known: friction lifts the rebound."""
 
 import json
+import os
+import re
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from lithobrake.analysis import Estimate, Observation
 from lithobrake.cli import app
-from lithobrake.files.reading import read_rows
+from lithobrake.files.reading import hashed_seed, read_rows
 from lithobrake.pipeline import InferredStudy, NowcastStudy, is_first_contact, nowcast_study
+from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.nowcast import contact_nowcast
-from lithobrake.pipeline.nowcast.contact_landers import ContactLanders
+from lithobrake.pipeline.nowcast.contact_emulator import TITLE, FirstContacts
+from lithobrake.pipeline.nowcast.contact_landers import ContactLanders, sides_down, with_scatter
+from lithobrake.vocabulary.constants import REFIT_COUNT
+from lithobrake.vocabulary.quantities import UNKNOWN_END
 
 from ..few_terms import few_terms
 from ..journeys.bouncing_lander import bounce, journey_tables, run_without_emulator
 
 KNOWN = "impact.speed,impact.incidence_deg"
+ROOT = Path(__file__).parents[3]
+MOTION = {"spin_out": 2.0, "elevation_out": 0.7, "speed_out": 0.3}
+MOTION_ERRORS = {"spin_out": 0.1, "elevation_out": 0.01, "speed_out": 0.02}
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -72,7 +86,8 @@ def test_a_faster_rebound_rests_farther_and_later(fast: dict, folder: Path, tmp_
 
 
 def test_a_captured_lander_rests_where_it_came_down(folder: Path, tmp_path: Path) -> None:
-    content = nowcast_study(folder, seen(tmp_path, "outcome\ncaptured\n"))
+    content = nowcast_study(folder, seen(tmp_path, "outcome,contact_duration\ncaptured,0.3\n"))
+    assert "Not used, as the emulator has no law of it for captured landers: contact_duration." in content["statement"]
     assert content["rest"]["at_rest"]["after"][1] == 1.0
     assert content["predictive_p_value"] is None
     # Each way is ten times the horizontal speed, of at most 0.08 m/s at 40 degrees.
@@ -83,13 +98,21 @@ def test_a_captured_lander_rests_where_it_came_down(folder: Path, tmp_path: Path
 def test_a_contact_outside_of_the_study_has_no_interval(folder: Path, tmp_path: Path) -> None:
     content = nowcast_study(folder, seen(tmp_path, "speed_out,spin_out\n0.9,40\n"))
     assert not content["is_reliable"]
-    assert content["rest"]["at_rest"]["after"][0] is None
-    assert content["inputs"]["grain.friction"]["after"][2] is None
-    assert any("lies outside what the study simulated" in one for one in content["statement"])
+    assert (content["rest"], content["inputs"], content["ground"]) == (None, {}, {})
+    assert len(content["statement"]) == 1
+    assert "lies outside what the study simulated, so nothing is said" in content["statement"][0]
+    # Those of the contact before would stand for this one.
+    assert not (folder / "nowcast.csv").exists()
+    assert not (folder / "nowcast.png").exists()
 
 
 @pytest.mark.parametrize(("text", "words"), [
-    ("speed_out,impact.speed\n0.03,9\n", r"impact\.speed lies outside what the study simulated; allowed: 0\."),
+    ("speed_out,impact.speed\n0.03,9\n", r"of 100 % of the landers impact\.speed lies outside what the study"),
+    ("speed_out,impact.speed\n0.03,-0.05\n", r"has -0\.05 m/s for impact\.speed; allowed: 0 or more"),
+    ("speed_out,impact.speed\n0.03,nan\n", r"has nan for impact\.speed; allowed: a finite number"),
+    ("speed_out,impact.spin_x\n0.03,5000\n", r"gives a spin of 5000 rad/s; allowed: at most "),
+    ("speed_out,bed\n0.03,a\n", "has the bed a; a nowcast is of one contact; leave the column out"),
+    ("contact_duration\n20\n", "has contact_duration and no outcome; say in a column outcome"),
     ("speed_out,grain.friction\n0.03,0.5\n", r"gives grain\.friction of the contact; allowed: impact\.speed"),
     ("speed_out,impact.orientation.w\n0.03,1\n", "gives a part of the attitude; allowed: "),
     ("speed_out\n-0.03\n", r"contact\.csv has -0\.03 for speed_out; allowed: 0 or more"),
@@ -120,6 +143,7 @@ def test_the_command_says_ground_and_place(folder: Path, tmp_path: Path, monkeyp
     assert found.exit_code == 0, found.output
     lines = " ".join(found.output.split())
     assert "simulated journeys on 12 beds" in lines
+    assert re.search(r"The first contacts of \d+ of 250 drawn landers are like this one", lines)
     assert "Place of rest: " in lines
     assert "Nowcast: " in lines
     # Several bounces tell the soil alone, as in any study.
@@ -134,9 +158,106 @@ def test_a_study_without_emulated_journeys_to_rest_is_refused(tmp_path: Path) ->
         NowcastStudy.open(found.folder)
 
 
+def landers(ends: list[str], times: np.ndarray, refit: np.ndarray | None = None) -> ContactLanders:
+    count = len(ends)
+    refits = np.zeros(count, int) if refit is None else refit
+    return ContactLanders(np.arange(count), refits, np.array(ends), {"time_s": times})
+
+
 def test_landers_that_never_rest_have_no_numbers() -> None:
-    nothing = ContactLanders(
-        np.zeros(2, int), np.zeros(2, int), np.array(["escaped"] * 2), {"time_s": np.full(2, np.nan)}
-    )
+    nothing = landers(["escaped"] * 2, np.full(2, np.nan))
     assert nothing.quantiles("time_s") == [None, None, None]
     assert nothing.rows() == [[0, 0, "escaped", ""], [1, 0, "escaped", ""]]
+
+
+def test_a_share_at_rest_is_that_of_known_ends_and_holds_for_all() -> None:
+    """Of 20 landers 9 rest, 9 escape and 2 have no known end: a half of the known, 0.45 to 0.55 of all."""
+    ends = (["at_rest"] * 9 + ["escaped"] * 9 + [UNKNOWN_END] * 2) * REFIT_COUNT
+    refit = np.arange(len(ends)) // 20
+    found = landers(ends, np.zeros(len(ends)), refit).at_rest(Refits(12, 48, None))
+    assert found.value == 0.5
+    lower, upper = found.lower, found.upper
+    assert lower is not None
+    assert upper is not None
+    assert lower < 0.45 < 0.55 < upper
+
+
+def test_times_are_told_of_nine_in_ten_known_ends_at_least() -> None:
+    times = np.where(np.arange(100) < 80, 7.0, np.nan)
+    ends = ["at_rest"] * 80 + ["escaped"] * 10
+    assert landers([*ends, *[UNKNOWN_END] * 10], times).quantiles("time_s") == [7.0, 7.0, 7.0]
+    too_many = landers([*ends[:89], *[UNKNOWN_END] * 11], times)
+    assert too_many.quantiles("time_s") == [None, None, None]
+    assert np.isnan(too_many.told["time_s"]).all()
+
+
+def test_few_landers_widen_a_share() -> None:
+    """A normal interval of a half of 100 is 1.645 x 0.05 wide to each side, beside 0.1 of beds, in quadrature."""
+    found = with_scatter(Estimate(0.5, 0.4, 0.6), 100.0)
+    assert (found.lower, found.upper) == pytest.approx((0.5 - 0.12948, 0.5 + 0.12948), abs=1e-4)
+    assert with_scatter(Estimate(0.5, None, None), 100.0).lower is None
+
+
+def contacts(beyond: list[str]) -> FirstContacts:
+    """Landers that all left with one motion, of an emulator that is asked for its seed and a range alone."""
+    count = len(beyond)
+    emulator = SimpleNamespace(
+        design=SimpleNamespace(study=SimpleNamespace(seed=3)), ranges={"impact.speed": (0.01, 0.1)}
+    )
+    outputs = {"speed_out": 0.1, "elevation_out": 0.5, "azimuth_out": 0.0, "spin_out": 1.0}
+    every = {name: np.full(count, value) for name, value in outputs.items()}
+    whole, axis, ended = np.arange(count), np.tile([0.0, 1.0, 0.0], (count, 1)), np.full(count, "clear")
+    return FirstContacts(emulator, None, whole, whole, ended, every, axis, {}, np.array(beyond))  # type: ignore[arg-type]
+
+
+def test_observed_motion_takes_its_errors_in_one_order() -> None:
+    found = contacts([""] * 4).answers(np.arange(4), MOTION, MOTION_ERRORS)
+    random = np.random.default_rng(hashed_seed(3, TITLE, "errors"))
+    speed, elevation, spin = (
+        value + error * random.standard_normal(4) for value, error in ((0.3, 0.02), (0.7, 0.01), (2.0, 0.1))
+    )
+    assert np.allclose(found.velocity[:, 2], speed * np.sin(elevation))
+    assert np.allclose(found.spin[:, 1], spin)
+
+
+def test_the_order_is_that_of_every_process() -> None:
+    """The order of a set of words changes with the seed of their hashes: these three stand otherwise by 1 and 2."""
+    code = (
+        f"from {__name__} import MOTION, MOTION_ERRORS, contacts, np\n"
+        "print(contacts([''] * 4).answers(np.arange(4), MOTION, MOTION_ERRORS).velocity.tolist())"
+    )
+    said = {
+        subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(ROOT)},
+            check=True,
+            capture_output=True,
+            text=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert len(said) == 1
+
+
+def test_landers_beyond_the_ranges_are_said_and_more_than_a_tenth_refused() -> None:
+    contacts([*[""] * 90, *["impact.speed"] * 10]).refuse_beyond("seen.csv")
+    with pytest.raises(
+        ValueError, match=r"of 11 % of the landers impact\.speed lies outside .* allowed: 0\.01 to 0\.1"
+    ):
+        contacts([*[""] * 89, *["impact.speed"] * 11]).refuse_beyond("seen.csv")
+
+
+def test_sides_are_of_contacts_alike_in_all_that_was_observed(folder: Path) -> None:
+    """No run has the change of velocity; without it all that left are alike."""
+    study = NowcastStudy.open(folder)
+    table = replace(study.journeys, face=np.where(np.arange(len(study.journeys.end)) % 2 == 0, "+z", "-z"))
+    whole = sides_down(study.folder, table, Observation({}, outcome="clear"))
+    assert set(whole) == {"+z", "-z"}
+    assert sides_down(study.folder, table, Observation({"speed_change": 0.05}, outcome="clear")) == {}
+    # What lies outside of all journeys is like none of them.
+    assert sides_down(study.folder, table, Observation({"speed_out": 9.0}, outcome="clear")) == {}
+
+
+def test_a_sequential_study_has_the_runs_that_it_grew_to(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(contact_nowcast, "grown", lambda design, path: design.with_run_count(60))
+    assert len(NowcastStudy.open(folder).design.rows) == 60

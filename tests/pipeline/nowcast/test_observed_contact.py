@@ -1,6 +1,7 @@
 """First contacts in files: numbers in a row, and records of an accelerometer."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +27,19 @@ def pulse(times: np.ndarray) -> str:
     values = np.where(inside, PEAK * np.sin(np.pi * (times - 0.1) / LENGTH), 0.0)
     rates = np.where(times < 0.12, 1.0, 6.0)
     rows = zip(times.tolist(), values.tolist(), rates.tolist(), strict=True)
-    return "time [s],acceleration [m/s2],angular_rate [deg/s]\n" + "\n".join(",".join(map(repr, row)) for row in rows)
+    samples = "\n".join(",".join([*map(repr, row), "clear"]) for row in rows)
+    return f"time [s],acceleration [m/s2],angular_rate [deg/s],outcome\n{samples}"
+
+
+def changed(change: Callable[[np.ndarray], np.ndarray]) -> str:
+    """The record of 0.3 s with other accelerations; change: gives them for times [sample_count]."""
+    times = np.round(np.arange(0.0, 0.3, STEP), 6)
+    rows = zip(times.tolist(), change(times).tolist(), strict=True)
+    return "time,acceleration,outcome\n" + "\n".join(f"{time!r},{value!r},clear" for time, value in rows)
+
+
+def half_sine(times: np.ndarray, begin: float, length: float = LENGTH, peak: float = PEAK) -> np.ndarray:
+    return np.where((times > begin) & (times < begin + length), peak * np.sin(np.pi * (times - begin) / length), 0.0)
 
 
 def test_a_record_gives_the_numbers_of_its_pulse(tmp_path: Path) -> None:
@@ -50,13 +63,48 @@ def test_a_record_gives_the_numbers_of_its_pulse(tmp_path: Path) -> None:
     (lambda text: "\n".join(text.splitlines()[:121] + text.splitlines()[131:]), r"has a gap of 0\.011 s at 0\.119 s"),
     (lambda text: text.replace("[m/s2]", "[m]"), r"has acceleration in the unit \[m\]; allowed: m/s2"),
     (lambda text: text.replace("0.125,", "0.125,x"), 'for acceleration in row 126; write a number'),
-    (lambda text: text.replace("0.125,", "0.125,nan,1\n0.1255,"), "has nan for acceleration in row 126; leave out"),
-    (lambda text: "time,acceleration\n" + "\n".join(f"{k},0" for k in range(9)), "has no acceleration above 0"),
+    (lambda text: text.replace("0.125,", "0.125,nan,1,clear\n0.1255,"), "has nan for acceleration in row 126; leave"),
+    (lambda text: "time,acceleration,outcome\n" + "\n".join(f"{k},0,clear" for k in range(9)), "no acceleration above"),
+    (lambda text: text.replace(",clear", ","), "has no outcome; say in a column outcome whether the lander left the"),
+    (lambda text: text.replace("clear", "captured", 1), "has captured and clear; say in a column outcome"),
+    (lambda text: text.replace("clear", "time_limit"), "has time_limit; say in a column outcome"),
 ])  # fmt: skip
 def test_a_record_that_tells_no_contact_is_refused(change: object, words: str, tmp_path: Path) -> None:
     text = pulse(np.round(np.arange(0.0, 0.3, STEP), 6))
     with pytest.raises(ValueError, match=words):
         read_contact(written(tmp_path, change(text)))  # type: ignore[operator]
+
+
+@pytest.mark.parametrize(("change", "words"), [
+    # Another contact 0.06 s after the end of the first, which lasted 0.05 s.
+    (lambda t: half_sine(t, 0.1) + half_sine(t, 0.21, peak=1.0), r"m/s2 at 0\.212 s, above 5 % of the peak and apart"),
+    (lambda t: half_sine(t, 0.21) + half_sine(t, 0.1, peak=1.0), r"m/s2 at 0\.102 s, above 5 % of the peak and apart"),
+    (lambda t: half_sine(t, 0.1) + 0.15 * (np.round(t / STEP) % 60 == 7), r"has 0\.15 m/s2 at 0\.007 s, above 5 %"),
+    (lambda t: half_sine(t, 0.1) + 0.2, r"begins in contact, with 0\.2 m/s2 at 0 s"),
+    (lambda t: half_sine(t + 0.125, 0.1), "begins in contact, with 2 m/s2 at 0 s"),
+    (lambda t: half_sine(t, 0.274), r"ends in contact, with 2 m/s2 at 0\.299 s"),
+])  # fmt: skip
+def test_a_record_that_is_not_of_one_whole_contact_is_refused(
+    change: Callable[[np.ndarray], np.ndarray], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=words):
+        read_contact(written(tmp_path, changed(change)))
+
+
+def test_touches_close_together_are_one_contact(tmp_path: Path) -> None:
+    """From 0.1 s to 0.15 s and, after a quiet 0.02 s, from 0.17 s to 0.19 s: 0.09 s, less what is below 5 %."""
+    path = written(tmp_path, changed(lambda t: half_sine(t, 0.1) + half_sine(t, 0.17, 0.02)))
+    found = read_contact(path)
+    assert found.outputs["contact_duration"] == pytest.approx(0.09, abs=3.0 * STEP)
+    assert found.outputs["speed_change"] == pytest.approx(PEAK * (LENGTH + 0.02) * 2.0 / math.pi, rel=0.02)
+    assert found.errors["contact_duration"] == pytest.approx(STEP)
+
+
+def test_a_record_of_a_captured_lander_says_so_and_has_no_spin_after_it(tmp_path: Path) -> None:
+    found = read_contact(written(tmp_path, pulse(np.arange(0.0, 0.3, STEP)).replace("clear", "captured")))
+    assert found.outcome == "captured"
+    assert set(found.outputs) == {"contact_duration", "peak_acceleration", "speed_change"}
+    checked_contact(found, BOUNDS, "seen.csv")
 
 
 def test_a_gap_beside_the_contact_does_not_count(tmp_path: Path) -> None:
@@ -81,7 +129,9 @@ def test_numbers_in_a_row_are_a_contact_of_their_own(tmp_path: Path) -> None:
     (Observation({"speed_out": math.nan}), "has nan for speed_out"),
     (Observation({"speed_out": 0.1}, {"speed_out": -1.0}), "has -1 for error:speed_out; allowed: 0 or more"),
     (Observation({"speed_out": 0.1}, {"spin_out": 1.0}), "has 1 for error:spin_out; allowed: 0 or more, of what was"),
-    (Observation({"speed_out": 0.1}, outcome="captured"), "has the outcome captured and speed_out; allowed: outputs"),
+    (Observation({"speed_out": 0.1}, outcome="captured"), "has the outcome captured and speed_out; allowed: contact"),
+    (Observation({"contact_duration": 0.1}), "has contact_duration and no outcome; say in a column outcome whether"),
+    (Observation({"speed_out": 0.1}, bed="a"), "has the bed a; a nowcast is of one contact; leave the column out"),
     (Observation({}), "has neither outputs nor an outcome; give at least one: speed_out"),
 ])  # fmt: skip
 def test_what_cannot_be_observed_is_refused(contact: Observation, words: str) -> None:
