@@ -85,10 +85,10 @@ def row(wheel: Path, python: str, resolution: str, tests: tuple[str, ...]) -> Ro
 
 
 def main() -> None:
-    options = command_line(__doc__, "wheel", "pythons...", tests=TESTS).parse_args()
+    options = command_line(__doc__, "wheel", "pythons...", tests=TESTS, resolutions=tuple(RESOLUTIONS)).parse_args()
     rows = read_document(OUT, {"rows": []})["rows"]
     for python in map(str, options.pythons):
-        for resolution in RESOLUTIONS:
+        for resolution in options.resolutions:
             here = origin(f"benchmarks/install_matrix.py {options.wheel.name} {Path(python).name}")
             new = row(options.wheel.resolve(), python, resolution, tuple(options.tests)) | here
             print({key: value for key, value in new.items() if key != "packages"}, flush=True)
