@@ -1,4 +1,4 @@
-"""The wheel with the lowest and the newest versions of all that it needs, on each Python given: does it work, how large?
+"""The wheel with the lowest and the newest versions of what it needs, on each Python given: does it work, how large?
 
     python benchmarks/install_matrix.py dist/lithobrake-0.1.0-py3-none-any.whl python3.11 python3.12
 
