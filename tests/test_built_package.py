@@ -21,7 +21,8 @@ from .syntax_trees import syntax_tree
 ROOT = Path(__file__).parents[1]
 ARCHIVE = f"lithobrake-{lithobrake.__version__}"
 # What tests and documents read, beside the sources.
-NEEDED = ("README.md", "CHANGELOG.md", "LICENSE", "mkdocs.yml", "pyproject.toml", "tests/conftest.py", ".ci/run")
+NEEDED = ("README.md", "CHANGELOG.md", "LICENSE", "mkdocs.yml", "pyproject.toml", "tests/conftest.py", ".ci/run",
+    "Containerfile", ".dockerignore", "recipe/recipe.yaml")  # fmt: skip
 FOLDERS = ("benchmarks", "docs", "examples", "lithobrake", "scenarios", "tests", "validation")
 SAY = """
 import lithobrake
@@ -171,6 +172,38 @@ def test_imports_of_third_parties_are_declared() -> None:
                 used.add(node.module.split(".")[0])
     foreign = {names_on_index.get(name, name) for name in used if name not in sys.stdlib_module_names} - {"lithobrake"}
     assert foreign <= declared
+
+
+def test_the_conda_recipe_asks_for_what_the_project_asks_for() -> None:
+    yaml = pytest.importorskip("yaml")
+    recipe, project = yaml.safe_load((ROOT / "recipe" / "recipe.yaml").read_text()), _project()
+    assert recipe["context"]["version"] == lithobrake.__version__
+    assert recipe["about"]["summary"] == project["description"]
+    assert recipe["build"]["python"]["entry_points"] == [f"lithobrake = {project['scripts']['lithobrake']}"]
+    # conda-forge's matplotlib brings Qt besides, which nothing here draws with.
+    names = {"matplotlib": "matplotlib-base"}
+    asked = [("python", project["requires-python"]), *(_parted(entry) for entry in project["dependencies"])]
+    assert recipe["requirements"]["run"] == [f"{names.get(name, name)} {bounds}" for name, bounds in asked]
+    builder = tomllib.loads((ROOT / "pyproject.toml").read_text())["build-system"]["requires"]
+    assert {" ".join(_parted(entry)) for entry in builder} <= set(recipe["requirements"]["host"])
+
+
+def test_the_container_runs_as_a_user_of_its_own_and_takes_the_source_of_the_clone() -> None:
+    lines = (ROOT / "Containerfile").read_text().splitlines()
+    last = {line.split()[0]: line for line in lines if line and line.split()[0].isupper()}
+    assert last["USER"] == "USER lander"
+    assert last["ENTRYPOINT"] == 'ENTRYPOINT ["lithobrake"]'
+    assert "COPY . /source" in lines
+    left_out = (ROOT / ".dockerignore").read_text().split()
+    # What the wheel is built from.
+    assert not {"README.md", "LICENSE", "pyproject.toml", "lithobrake", "scenarios", "examples"} & set(left_out)
+    assert all(name in "".join(lines) for name in ("useradd --uid 1000 --create-home lander", "chown lander /work"))
+
+
+def _parted(entry: str) -> tuple[str, str]:
+    """Name and bounds of a requirement such as numpy>=1.26."""
+    name, bounds = re.match(r"([\w.-]+)(.*)", entry).groups()
+    return name, bounds
 
 
 def _project() -> dict[str, list[str]]:
