@@ -87,7 +87,7 @@ def test_the_wheel_says_what_it_is(release: Path) -> None:
     assert (said["Name"], said["Version"]) == ("lithobrake", lithobrake.__version__)
     assert (said["License-Expression"], said["Requires-Python"]) == ("BSD-3-Clause", ">=3.11")
     classifiers = said.get_all("Classifier")
-    assert {f"Programming Language :: Python :: 3.{minor}" for minor in (11, 12, 13)} <= set(classifiers)
+    assert {f"Programming Language :: Python :: 3.{minor}" for minor in (11, 12, 13, 14)} <= set(classifiers)
     assert "Intended Audience :: Science/Research" in classifiers
     assert {name.split("/")[0] for name in names} == {"lithobrake", f"{ARCHIVE}.dist-info"}
     sources = {path.relative_to(ROOT).as_posix() for path in (ROOT / "lithobrake").rglob("*") if path.is_file()}
