@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.nowcast import contact_nowcast
 from lithobrake.pipeline.nowcast.contact_emulator import TITLE, FirstContacts
 from lithobrake.pipeline.nowcast.contact_landers import ContactLanders, sides_down, with_scatter
+from lithobrake.statements.nowcast import statement
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
@@ -261,3 +263,26 @@ def test_sides_are_of_contacts_alike_in_all_that_was_observed(folder: Path) -> N
 def test_a_sequential_study_has_the_runs_that_it_grew_to(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contact_nowcast, "grown", lambda design, path: design.with_run_count(60))
     assert len(NowcastStudy.open(folder).design.rows) == 60
+
+
+FOUND: dict[str, Any] = {
+    "is_reliable": True, "effective_count": 1366.4, "fewest": 100.0, "landers": 2000, "journeys": 96, "beds": 24,
+    "predictive_p_value": 0.4, "beyond": 0.031, "beyond_input": "impact.speed", "not_used": [], "ground": {},
+    "inputs": {}, "level": 0.9,
+    "rest": {"at_rest": {"before": 0.9, "after": [0.5, 0.8, 0.95]}, "unknown": 0.2, "sides": {}} | {
+        name: {"before": [None] * 3, "after": [None] * 3} for name in ("time_s", "distance_m", "from_contact_m")},
+}  # fmt: skip
+
+
+def test_landers_are_counted_and_what_is_left_out_is_said() -> None:
+    said = statement(FOUND)
+    assert said[0].startswith("The first contacts of 1366 of 2000 drawn landers are like this one; they stand on 96")
+    assert said[1].startswith("Left out are 3.1 % of the drawn landers, ")
+    assert said[-1] == "These are more than 10 %, so time and place of rest are not told."
+
+
+def test_a_refusal_stands_alone() -> None:
+    (said,) = statement(FOUND | {"is_reliable": False, "effective_count": 46.0, "rest": None})
+    assert said.startswith(
+        "The first contacts of 46 of 2000 drawn landers are like this one, fewer than 100, so nothing"
+    )
