@@ -34,7 +34,7 @@ def uniform(lower: float, upper: float) -> STUDY:
 
 # Sizes of grains come from the ground, and so do width and number.
 OPEN_GROUND = dict.fromkeys(("bed.grain_count", "bed.width", "bed.diameter"))
-# The edges of its body are published [ESA-Hera], the mass at the end of the mission is not: between half and three
+# The edges of its body are published [ESA-2026], the mass at the end of the mission is not: between half and three
 # quarters of the 1214 kg at launch is ours. Without its wings of 11.5 m. A hop stays on the bed up to a diameter.
 HERA = {
     "lander.edges": [1.6, 1.6, 1.6], "lander.mass": uniform(600.0, 900.0), "journey.hop_height": 2.8,
