@@ -51,7 +51,7 @@ def rank_correlations(results: lithobrake.StudyResults) -> dict[str, dict[str, f
     }
 
 
-def keep(study: Path, out: Path, motion: bool) -> None:
+def keep(study: Path, out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
     results = lithobrake.StudyResults(study)
     # One touchdown of each lander stands in drawn.csv, with all that is known of it.
@@ -72,19 +72,18 @@ def keep(study: Path, out: Path, motion: bool) -> None:
         shutil.copy(figure, out / "figures" / figure.name)
     if (study / "samples.h5").exists():
         write_document(out / "rank_correlations.json", rank_correlations(results))
-    export_study(results, out / "landing", ["vtkhdf", "sheet"] if motion else ["sheet"], ExportOptions(replaces=True))
+    export_study(results, out / "landing", ["sheet"], ExportOptions(replaces=True))
 
 
 def main() -> None:
     parser = command_line(__doc__, "study", command=str, log=Path, out=ROOT / "showcase")
-    parser.add_argument("--motion", action="store_true", help="the landing as VTKHDF too, some megabytes")
     parser.add_argument(
         "--kept-landings", action="store_true", help="the landings are those of the origin that is there (kept_runs.py)"
     )
     given = parser.parse_args()
     out = given.out / given.study.name
     earlier = read_document(out / "origin.json") if given.kept_landings else {}
-    keep(given.study, out, given.motion)
+    keep(given.study, out)
     log = given.log.read_text()
     made = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}
     if earlier:
