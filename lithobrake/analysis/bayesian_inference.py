@@ -151,6 +151,9 @@ def infer(
     the emulator has two runs.
     """
     shared, seed = _checked(model, observations, own), whole_number("seed", seed, 0)
+    if any(len(bed) > 1 for bed in posterior.by_bed(observations)):
+        # Rows alone know the effect of a bed.
+        model = model.of_rows
     models = model.refits(refit_count, seed) if refit_count else [model]
     laws = {name: model.runs.inputs[name] for name in shared}
 

@@ -127,7 +127,8 @@ def bed_shares(model: Emulator) -> dict[str, float]:
 
     Raises ValueError where no bed has two runs.
     """
-    effect, root = model.bed_effect, model.kernels.root
+    rows = model.of_rows
+    effect, root = rows.bed_effect, rows.kernels.root
     whole, of_beds = np.diagonal(root @ root.T), np.diagonal(root @ effect.before @ root.T)
     names = [model.output_names[column] for column in model.runs.modelled]
     shares = np.divide(of_beds, whole, out=np.zeros(len(whole)), where=whole > 0.0)

@@ -222,6 +222,11 @@ class Emulator(Parts):
         return kernels_of(self)
 
     @property
+    def of_rows(self) -> "Emulator":
+        """The emulator by rows about a location and a scale, which knows what runs of one group have in common."""
+        return self if self.expansion is None else replace(self, expansion=None)
+
+    @property
     def bed_effect(self) -> BedEffect:
         """What runs of one group have in common, before any is seen. Raises ValueError where no group has two runs."""
         return BedEffect.of_groups(self.kernels.whitened, self.law.weights, self.runs.group[self.runs.has_outputs])
