@@ -18,6 +18,7 @@ TOLERANCES = {
     "ballistic_descent": "10 degrees for either end of a band",
     "deliveries": "its page, set before the first run; messages: the verdict of their authors",
     "experiments": "its page, one for each kind of quantity",
+    "low_speed": "its page, set before the first run",
     "nine_codes": "its page, set before the runs",
     "paper_study": "the published error itself",
     "shapes": "its page, set before the first run",

@@ -1,4 +1,4 @@
-"""Write docs/validation/low_speed.md, its figure and quantities.csv from the tables of the low-speed cases.
+"""Write docs/validation/low_speed.md, its figure and its quantities from the tables of the low-speed cases.
 
 python validation/low_speed/write_page.py
 """
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from answers import CASES, Answer, answers_of, rows_of, those
-from fits import NOT_SHOWN, column
+from fits import column
 from matplotlib.axes import Axes
 from philae_into_ice import DENT
 from result_rows import HERE as EXPERIMENTS
@@ -18,17 +18,17 @@ from lithobrake.report.figures.style import INPUT_COLOURS, QUIET
 
 sys.path.append(str(EXPERIMENTS.parents[1] / "benchmarks"))
 from drawing import figure
-from harness import PAGES, read_document, write_rows
+from harness import PAGES, read_document
 from page import made, table, write_page, yes
+from quantities import CODE, EXPERIMENT, FLIGHT, NOT_SHOWN, Quantity, counts, keep_quantities
 
 HERE = Path(__file__).parent
-COLUMNS = ("case", "quantity", "measured", "here", "error", "tolerance", "agrees", "cause")
 HEADS = ("quantity", "source", "here", "tolerance", "agrees", "cause shown by")
 SUMMARY = ("case", "quantities", "agree", "disagree, cause shown", "disagree, cause not shown")
-# Cases by their keys: name in the summary, and the table of simulations behind them.
+# Cases by their keys: name in the summary, the table of simulations behind them, and where the numbers are from.
 SECTIONS = {
-    "mascot": ("MASCOT on beds", "lander_on_beds"), "shell": ("shell with grains", "filled_shell"),
-    "philae": ("Philae into ice", "philae_into_ice"),
+    "mascot": ("MASCOT on beds", "lander_on_beds", CODE), "shell": ("shell with grains", "filled_shell", EXPERIMENT),
+    "philae": ("Philae into ice", "philae_into_ice", FLIGHT),
 }  # fmt: skip
 
 
@@ -44,21 +44,11 @@ def cells(one: Answer) -> tuple[str, ...]:
     return one.claim.quantity, one.claim.measured, here, one.claim.tolerance, yes(one.agrees), one.cause
 
 
-def counts(answers: list[Answer]) -> tuple[int, int, int, int]:
-    agree, open_ones = sum(one.agrees for one in answers), sum(one.cause == NOT_SHOWN for one in answers)
-    return len(answers), agree, len(answers) - agree - open_ones, open_ones
-
-
-def note_quantities(answers: dict[str, list[Answer]]) -> None:
-    """Write the quantities with numbers as they are, for tables over several pages."""
-    write_rows(HERE / "quantities.csv", COLUMNS, (
-        {
-            "case": SECTIONS[case][0], "quantity": one.claim.quantity, "measured": one.claim.measured,
-            "here": f"{one.found.value:.5g}",
-            "error": "" if math.isnan(one.found.error) else f"{one.found.error:.3g}",
-            "tolerance": one.claim.tolerance, "agrees": yes(one.agrees), "cause": one.cause,
-        } for case, own in answers.items() for one in own
-    ))  # fmt: skip
+def quantity_of(case: str, one: Answer) -> Quantity:
+    """An answer as a quantity of the table of all pages."""
+    _, made_by, kind = SECTIONS[case]
+    _, measured, here, tolerance, _, cause = cells(one)
+    return Quantity(kind, one.claim.quantity, measured, here, "", tolerance, one.agrees, made_by, cause or NOT_SHOWN)
 
 
 def settings_of(name: str, value: str) -> list[tuple[str, str, str, str, str]]:
@@ -111,12 +101,13 @@ def draw() -> None:
 
 def main() -> None:
     answers = {case: answers_of(case) for case in CASES}
-    note_quantities(answers)
-    every = [one for own in answers.values() for one in own]
+    quantities = {case: [quantity_of(case, one) for one in own] for case, own in answers.items()}
+    keep_quantities("low_speed", {SECTIONS[case][0]: own for case, own in quantities.items()})
+    every = [one for own in quantities.values() for one in own]
     count, agree, shown, open_ones = counts(every)
-    summary = [(SECTIONS[case][0], *map(str, counts(own))) for case, own in answers.items()]
+    summary = [(SECTIONS[case][0], *map(str, counts(own))) for case, own in quantities.items()]
     summary.append(("**all**", *map(str, counts(every))))
-    kept = {case: read_document(HERE / f"{name}.json") for case, (_, name) in SECTIONS.items()}
+    kept = {case: read_document(HERE / f"{name}.json") for case, (_, name, _) in SECTIONS.items()}
     heads = ("setting", "runs", "mean", "standard deviation", "range")
     write_page(
         "low_speed", count=count, agreeing=agree, shown=shown, open=open_ones, summary=table(SUMMARY, summary),
