@@ -224,9 +224,7 @@ def highest_density(
         return HighestDensity((), None, "the places lie on one line or on top of each other, which has no area")
     grid = density.grid()
     longer, shorter = sorted(density.bandwidth.tolist(), reverse=True)
-    return HighestDensity(
-        tuple(_region(density, grid, share, tolerance) for share in shares), (longer, shorter), None
-    )
+    return HighestDensity(tuple(_region(density, grid, share, tolerance) for share in shares), (longer, shorter), None)
 
 
 def _density(places: Array) -> _Density | None:
