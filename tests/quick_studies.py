@@ -19,7 +19,7 @@ from lithobrake.campaign.single_run import Limits
 from lithobrake.campaign.worker import pickled
 from lithobrake.emulator import form_choice
 from lithobrake.pipeline import study_run
-from lithobrake.pipeline.commands import rare_landings, site_maps
+from lithobrake.pipeline.commands import emulator_job, rare_landings
 from lithobrake.report import reports
 from lithobrake.report.figures.style import STYLE
 
@@ -87,6 +87,6 @@ def quick_studies() -> Iterator[None]:
         patch.setitem(STYLE, "savefig.dpi", 50)
         patch.setattr(os, "fsync", lambda file: None)
         patch.setattr(sqlite3, "connect", partial(sqlite3.connect, factory=Unsynced))
-        for module in (study_run, rare_landings, site_maps):
+        for module in (study_run, rare_landings, emulator_job):
             patch.setattr(module, "LocalExecutor", OwnProcess)
         yield

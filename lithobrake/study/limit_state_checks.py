@@ -20,6 +20,15 @@ RESERVED = (*JourneyEnd, RETURNS, CAPTURED, "time_s", "distance_m", *AIM_RESULTS
 Case = Mapping[str, float | bool]
 
 
+def named_condition(study: Study, key: str, name: str) -> str:
+    """The condition of a limit state by its name, as it was asked for under a key. Raises ValueError for none."""
+    conditions = study.limit_states.conditions()
+    if name not in conditions:
+        known = ", ".join(conditions) or "none: the study has no [limit_states]"
+        raise ValueError(f"{key} is {name!r}; allowed: a name of [limit_states] ({known}); add it there")
+    return conditions[name]
+
+
 def option_states(study: Study) -> dict[str, LimitState]:
     """The limit states of a study that are asked of the landers of its options: those that these can tell."""
     states = {name: LimitState.of(text) for name, text in study.limit_states.conditions().items()}

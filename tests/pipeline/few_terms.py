@@ -8,7 +8,7 @@ import pytest
 from lithobrake.emulator import fitting, law, mean_law, ridge_ladder
 from lithobrake.pipeline import site_arrivals, site_grid
 from lithobrake.pipeline.answer import emulated_ends, journey_limit_states, option_answers, question_answers
-from lithobrake.pipeline.commands import requirement, site_maps
+from lithobrake.pipeline.commands import emulator_job, requirement, site_maps
 from lithobrake.pipeline.expansion import expansion_samples
 from lithobrake.pipeline.first_touchdown import emulator
 from lithobrake.pipeline.journeys import (
@@ -24,7 +24,7 @@ REFITS = 20
 WITH_REFITS = (
     site_grid, emulated_ends, question_answers, option_answers, journey_limit_states, site_maps, expansion_samples,
     emulator, delivery_options, first_arrivals, touchdown_emulator, delivered_landers, site_arrivals,
-    requirement,
+    requirement, emulator_job,
 )  # fmt: skip
 
 

@@ -29,6 +29,7 @@ from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.pipeline.study_run import run_study
 from lithobrake.statements.limits import few_origins, rare_limit_state
 from lithobrake.study import Study, StudySource
+from lithobrake.study.limit_state_checks import named_condition
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.limit_state import LimitState
 
@@ -185,11 +186,7 @@ class Landings:
 
 def _limit_state(study: Study, name: str) -> LimitState:
     """The limit state of a name. Raises ValueError where there is none, or landings have no distance from it."""
-    conditions = study.limit_states.conditions()
-    if name not in conditions:
-        known = ", ".join(conditions) or "none: the study has no [limit_states]"
-        raise ValueError(f"NAME is {name!r}; allowed: a name of [limit_states] ({known}); add it there")
-    state = LimitState.of(conditions[name])
+    state = LimitState.of(named_condition(study, "NAME", name))
     if state.journey:
         raise ValueError(
             f"limit_states.{name} is of whole journeys ({state.journey[0]}), and subset simulation makes first "

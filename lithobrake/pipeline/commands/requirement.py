@@ -7,12 +7,17 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.analysis.unseen_event import limit_of_runs
-from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.campaign.single_run import Model
 from lithobrake.files.atomic import atomic_path, write_rows
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.run_answers import is_on_one_ground
+from lithobrake.pipeline.commands.emulator_job import (
+    MOST_LANDERS,
+    emulator_job,
+    refuse_lander_count,
+    refuse_no_emulator,
+)
 from lithobrake.pipeline.delivery_grid import (
     Asked,
     follow_deliveries,
@@ -21,14 +26,7 @@ from lithobrake.pipeline.delivery_grid import (
     requirement_edges,
     simulate_corners,
 )
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
-from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.stages import emulates_touchdowns
-from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.pipeline.study_run import run_study
 from lithobrake.results.requirement_results import Requirement
 from lithobrake.statements.requirements import (
     delivery_rows,
@@ -39,7 +37,7 @@ from lithobrake.statements.requirements import (
     simulated_statement,
 )
 from lithobrake.study import Study, StudySource
-from lithobrake.study.limit_state_checks import option_states
+from lithobrake.study.limit_state_checks import named_condition, option_states
 from lithobrake.study.question_checks import MOST_AIMS, MOST_AXES, option_problem
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.constants import REFIT_COUNT
@@ -47,9 +45,6 @@ from lithobrake.vocabulary.journey_names import JOURNEY_WORDS
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.quantities import PURE, REST_NUMBERS
 
-# The stage whose emulator is asked.
-UNTIL = "emulated"
-MOST_LANDERS = 2_000_000
 # Simulated journeys of a corner, at least: fewer say nothing of a probability.
 FEWEST_SIMULATED = 12
 # Values of each parameter where none are counted, by how many parameters there are.
@@ -85,14 +80,10 @@ def find_requirement(
     shown = shown or Silent()
     asked = _asked(source.study, name, grid, probability, confidence)
     _refuse_counts(source.study, len(asked.options), lander_count, simulated_count)
-    run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
-    study, folder = with_site_gravity(source.study), StudyFolder(out)
-    why = why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE))
-    if why is not None:
-        raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")
-    with folder.alone(), DaskExecutor(scheduler) if scheduler is not None else LocalExecutor(worker_count) as executor:
-        job = Job(grown(DrawnDesign(study), folder), source.tables, folder, executor, shown, model)
-        shown.begin(f"requirement of {name}", 1, 1)
+    title = f"requirement of {name}"
+    with emulator_job(
+        source, out, title, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown
+    ) as job:  # fmt: skip
         return _found(job, name, asked, lander_count, simulated_count)
 
 
@@ -144,11 +135,7 @@ def _asked(
             "journey.touchdowns is 1, and a requirement is on where landers come to rest; allowed: a study that "
             "follows them to rest; leave the key out"
         )
-    if not emulates_touchdowns(study):
-        lacking = "journey.emulated_count" if study.design.run_count else "design.run_count"
-        raise ValueError(
-            f"a requirement asks the emulator of all touchdowns, and this study has none; set {lacking} above 0"
-        )
+    refuse_no_emulator(study, "a requirement")
     for key, share in (("probability", probability), ("confidence", confidence)):
         if not math.isfinite(share) or not 0.0 < share < 1.0:
             raise ValueError(f"{key} is {share:g}; allowed: above 0 and below 1, as 0.9; correct it")
@@ -169,19 +156,16 @@ def _asked(
 
 def _limit_state(study: Study, name: str) -> LimitState:
     """The limit state of a name. Raises ValueError for none, and for one that the emulator cannot decide."""
-    conditions, known = study.limit_states.conditions(), option_states(study)
-    if name in known:
-        return known[name]
-    if name not in conditions:
-        listed = ", ".join(conditions) or "none: the study has no [limit_states]"
-        raise ValueError(f"NAME is {name!r}; allowed: a name of [limit_states] ({listed}); add it there")
+    state = LimitState.of(named_condition(study, "NAME", name))
+    if name in option_states(study):
+        return state
     told = ", ".join((*REST_NUMBERS, *JOURNEY_WORDS))
-    if not (used := LimitState.of(conditions[name]).journey):
+    if not state.journey:
         raise ValueError(
             f"limit_states.{name} is of first touchdowns; allowed: one of whole journeys, which uses {told}; name such "
             "a one"
         )
-    lacking = [one for one in used if one not in (*REST_NUMBERS, *JOURNEY_WORDS)]
+    lacking = [one for one in state.journey if one not in (*REST_NUMBERS, *JOURNEY_WORDS)]
     raise ValueError(
         f"limit_states.{name} uses {lacking[0]}, which the emulator does not know; allowed: {told}; leave it out"
     )
@@ -191,11 +175,7 @@ def _refuse_counts(study: Study, deliveries: int, landers: int, simulated: int) 
     """Raise ValueError for counts of deliveries and landers that cannot be."""
     if deliveries > MOST_AIMS:
         raise ValueError(f"the ranges make {deliveries} deliveries; allowed: up to {MOST_AIMS}; count fewer values")
-    # The scatter between refits is the error of the emulator: each has as many landers, two at least.
-    if landers < 2 * REFIT_COUNT or landers % REFIT_COUNT:
-        raise ValueError(
-            f"--landers is {landers}; allowed: multiples of {REFIT_COUNT} from {2 * REFIT_COUNT}; take 1000"
-        )
+    refuse_lander_count(landers, 1000)
     beds = study.with_run_count(study.design.most_runs).bed_count
     # On one lander a bed nothing tells grounds from chance.
     if is_on_one_ground(study) and landers <= beds:

@@ -6,21 +6,19 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.analysis import EqualAreaCells
-from lithobrake.campaign import DaskExecutor, LocalExecutor
 from lithobrake.campaign.single_run import Model
 from lithobrake.files.atomic import write_json, write_rows
 from lithobrake.pipeline import site_grid
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
-from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.commands.emulator_job import (
+    MOST_LANDERS,
+    emulator_job,
+    refuse_lander_count,
+    refuse_no_emulator,
+)
 from lithobrake.pipeline.job import Job, Silent, StudyProgress
-from lithobrake.pipeline.journeys.touchdown_emulator import TOUCHDOWN_EMULATOR_FILE, why_no_emulator
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.sequential_sampling import grown
-from lithobrake.pipeline.site import with_site_gravity
-from lithobrake.pipeline.stages import emulates_touchdowns
-from lithobrake.pipeline.study_folder import StudyFolder
-from lithobrake.pipeline.study_run import run_study
 from lithobrake.results.site_results import SiteMap
 from lithobrake.results.study_files import json_values
 from lithobrake.statements.sites import with_words
@@ -28,10 +26,6 @@ from lithobrake.study import Study, StudySource
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.number_words import LEVEL
 from lithobrake.vocabulary.quantities import JOURNEY_DESIGN
-
-# The stage whose emulator is asked.
-UNTIL = "emulated"
-MOST_LANDERS = 2_000_000
 
 
 def map_sites(
@@ -55,32 +49,18 @@ def map_sites(
     cells = EqualAreaCells.of(cell_count)
     # Before the journeys of the study are made.
     _refuse(source.study, cell_count, lander_count)
-    run_study(source, out, until=UNTIL, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown)
-    study, folder = with_site_gravity(source.study), StudyFolder(out)
-    why = why_no_emulator(folder.read_json(TOUCHDOWN_EMULATOR_FILE))
-    if why is not None:
-        raise ValueError(f"{out} has no emulator of touchdowns. {why} Follow more journeys (journey.count).")
-    with folder.alone(), DaskExecutor(scheduler) if scheduler is not None else LocalExecutor(worker_count) as executor:
-        design = grown(DrawnDesign(study), folder)
-        job = Job(design, source.tables, folder, executor, shown, model)
-        shown.begin("map of sites", 1, 1)
+    title = "map of sites"
+    with emulator_job(
+        source, out, title, worker_count=worker_count, scheduler=scheduler, model=model, shown=shown
+    ) as job:  # fmt: skip
         return _mapped(job, source.stem, cells, lander_count)
 
 
 def _refuse(study: Study, cell_count: int, lander_count: int) -> None:
     """Raise ValueError for a study that has no landers to deliver elsewhere, and for counts that make no map."""
-    if not emulates_touchdowns(study):
-        lacking = "journey.emulated_count" if study.design.run_count else "design.run_count"
-        raise ValueError(
-            f"sites asks the emulator of all touchdowns, and this study has none; set {lacking} above 0 to fit it"
-        )
-    # Sites are compared refit by refit, so each refit has as many landers; two of one refit are the fewest that
-    # scatter.
-    if lander_count < 2 * REFIT_COUNT or lander_count % REFIT_COUNT:
-        raise ValueError(
-            f"--landers is {lander_count}; allowed: multiples of {REFIT_COUNT} from {2 * REFIT_COUNT}; take 200"
-        )
-    # All landers of all cells are followed at once, in arrays.
+    refuse_no_emulator(study, "sites")
+    # Sites are compared refit by refit.
+    refuse_lander_count(lander_count, 200)
     if cell_count * lander_count > MOST_LANDERS:
         raise ValueError(
             f"--cells {cell_count} with --landers {lander_count} makes {cell_count * lander_count} landers; allowed: "

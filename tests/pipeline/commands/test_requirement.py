@@ -15,7 +15,7 @@ from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.cli import app
 from lithobrake.pipeline import delivery_grid, find_requirement, grid_of_ranges, requirement_lines, write_requirement
 from lithobrake.pipeline.answer.emulated_ends import Refits
-from lithobrake.pipeline.commands import requirement
+from lithobrake.pipeline.commands import emulator_job
 from lithobrake.pipeline.delivery_grid import (
     Asked,
     GridLanders,
@@ -295,7 +295,7 @@ def test_of_unknown_ground_more_landers_than_beds_are_asked(
     gravel = {"weight": 1.0, "grain_size": {"distribution": "log_uniform", "lower": 0.08, "upper": 0.4}}
     tables |= {"ground": {"kind": {"gravel": gravel}, "unknown": unknown}, "bed": {"bed_count": 40}}
     source = StudySource.of_tables(tables, function_identity(rest))
-    monkeypatch.setattr(requirement, "run_study", _runs)
+    monkeypatch.setattr(emulator_job, "run_study", _runs)
     said = r"--landers is 40, and the study may have 40 beds of unknown ground; allowed: more .*; take 100"
     with pytest.raises(ValueError if refused else Ran, match=said if refused else None):
         find_requirement(source, tmp_path / "out", "near", GRID, lander_count=landers, model=rest)
