@@ -10,6 +10,7 @@ from scipy.special import logsumexp, ndtr, ndtri
 
 from lithobrake.analysis import posterior
 from lithobrake.analysis.confidence import LEVEL
+from lithobrake.analysis.observed_draws import weighted_quantiles
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training_data import one_thread
@@ -81,7 +82,7 @@ class Posterior:
         ends = [0.5 - 0.5 * LEVEL, 0.5, 0.5 + 0.5 * LEVEL]
         found = {}
         for (name, law), values in zip(self.inputs.items(), self.points.T, strict=True):
-            lower, middle, upper = self._quantiles(values, ends)
+            lower, middle, upper = weighted_quantiles(values, self.weights, ends)
             least, median, most = (float(law.ppf(end)) for end in ends)
             germ = law.germ(values)
             # Where one point has all the weight its law has no width, and no more is known of it.
@@ -109,11 +110,6 @@ class Posterior:
             said.append(f"{few}: {self.remedy}" if self.remedy else few)
         words = "; ".join(said)
         return f"{words[0].upper()}{words[1:]}." if said[0].startswith("the") else f"{words}."
-
-    def _quantiles(self, values: Array, probabilities: Sequence[float]) -> list[float]:
-        order = np.argsort(values)
-        steps = np.cumsum(self.weights[order]) - 0.5 * self.weights[order]
-        return [float(np.interp(one, steps, values[order])) for one in probabilities]
 
     def _information(self, shares: Array) -> float:
         """Divergence of the law after from that before, in equal steps of probability before [nats], freed of luck."""
