@@ -33,7 +33,8 @@ from lithobrake.analysis import LEVEL, regression_terms, share_estimate
 from lithobrake.analysis.confidence import bed_components, numbered_beds, t_quantile
 from lithobrake.analysis.share_estimate import standard_error
 from lithobrake.files.reading import hashed_seed
-from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
+from lithobrake.pipeline.design.bed_order import beds_of_runs
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.pipeline.study_folder import StudyFolder

@@ -6,13 +6,13 @@ from .executors import DaskExecutor as DaskExecutor
 from .executors import LocalExecutor as LocalExecutor
 from .executors import WorkerDiedError as WorkerDiedError
 from .executors import available_cores as available_cores
-from .external_model import Command as Command
-from .external_model import ModelServer as ModelServer
-from .external_model import absolute_words as absolute_words
 from .ledger import Ledger as Ledger
 from .listing import missing as missing
 from .listing import run_lines as run_lines
 from .listing import write_csv as write_csv
+from .model_server import ModelServer as ModelServer
+from .program import Command as Command
+from .program import absolute_words as absolute_words
 from .record import Record as Record
 from .record import RunStatus as RunStatus
 from .record import Tally as Tally

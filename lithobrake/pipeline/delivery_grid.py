@@ -15,7 +15,7 @@ from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.journey_limit_states import rest_values
 from lithobrake.pipeline.answer.run_answers import is_on_one_ground, why_no_interval
-from lithobrake.pipeline.design.drawn_design import beds_of_runs
+from lithobrake.pipeline.design.bed_order import beds_of_runs
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
 from lithobrake.pipeline.journeys.delivery_options import option_landers

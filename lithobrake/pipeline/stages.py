@@ -8,8 +8,9 @@ from lithobrake.files.reading import content_hash
 from lithobrake.pipeline.answer.run_estimates import ESTIMATES_FILE, estimate
 from lithobrake.pipeline.answer.study_summary import summary_dependencies, write_summary
 from lithobrake.pipeline.design.arrivals import place_region
+from lithobrake.pipeline.design.bed_order import beds_of_runs
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, design_dependencies
-from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, beds_of_runs
+from lithobrake.pipeline.design.side_designs import SIDE_DESIGNS
 from lithobrake.pipeline.expansion import expansions
 from lithobrake.pipeline.expansion.expansion_samples import draw_samples
 from lithobrake.pipeline.first_touchdown import emulator

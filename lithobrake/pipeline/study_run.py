@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from lithobrake.campaign import DaskExecutor, LocalExecutor
-from lithobrake.campaign.external_model import PREFIX
+from lithobrake.campaign.model_server import PREFIX
 from lithobrake.campaign.single_run import Model
 from lithobrake.campaign.worker import refuse_while_importing
 from lithobrake.chaos.training_data import one_thread

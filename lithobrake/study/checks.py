@@ -228,7 +228,7 @@ def _solver_problems(study: Study) -> Iterator[str]:
         if solver.inputs and study.has_soil:
             yield "solver.inputs has numbers, and solver.command is missing; give the command that reads them"
         return
-    from lithobrake.campaign.external_model import PREFIX, ModelServer
+    from lithobrake.campaign.model_server import PREFIX, ModelServer
 
     try:
         words = shlex.split(solver.command)
@@ -258,7 +258,7 @@ def _solver_file_problems(study: Study) -> Iterator[str]:
     if not is_program:
         yield "solver.templates and solver.answer are files of a program, and solver.command names none; leave them out"
         return
-    from lithobrake.campaign.external_model import DECODERS
+    from lithobrake.campaign.program_answer import DECODERS
 
     for name in solver.templates:
         if not os.path.isfile(name):

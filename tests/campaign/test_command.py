@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from lithobrake.campaign import Command, Ledger, Limits, LocalExecutor, Runs, absolute_words, run
-from lithobrake.campaign.external_model import fill_template, read_answer
+from lithobrake.campaign.program import fill_template
+from lithobrake.campaign.program_answer import read_answer
 from lithobrake.campaign.single_run import KEPT, CappedLog, last_words, run_model
 
 X = np.array([[1.0], [2.0]])

@@ -34,6 +34,8 @@ ELSEWHERE = (
     *("pipeline/runs/beds.py", "pipeline/runs/solver.py"),  # the keys of beds and runs
     # inputs of the first touchdowns of journeys, which the keys of runs hold
     *("pipeline/design/arrivals.py", "pipeline/design/descents.py", "pipeline/design/drawn_design.py"),
+    *("pipeline/design/bed_order.py", "pipeline/design/descent_checks.py", "pipeline/design/released_states.py"),
+    "pipeline/design/side_designs.py",
     "pipeline/design/random_inputs.py",  # inputs of runs, likewise
     "__init__.py",
 )

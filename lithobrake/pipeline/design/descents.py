@@ -1,9 +1,8 @@
 """Landers on their way to their first touchdown, from states of another tool or from where they are released."""
 
-import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,86 +10,26 @@ from scipy.spatial.transform import Rotation
 
 from lithobrake.geometry.attitude import directions
 from lithobrake.pipeline.design import arrivals
+from lithobrake.pipeline.design.descent_checks import refuse_below, refuse_fast, refuse_spinning
+from lithobrake.pipeline.design.released_states import released_states, with_offsets
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.site import Site
-from lithobrake.study import Study, StudyError
+from lithobrake.study import Study
 from lithobrake.study.delivered_states import states_of
-from lithobrake.study.delivery_sections import SIDE, DeliverySection, ReleaseSection
-from lithobrake.study.ground_checks import deep_contact, fast_spin
-from lithobrake.study.lander_checks import lander_radius
+from lithobrake.study.delivery_sections import SIDE
 from lithobrake.study.state_paths import DeliveredStates
-from lithobrake.vocabulary.array_types import Array
-from lithobrake.vocabulary.constants import GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.known_bodies import printed_name
 from lithobrake.vocabulary.number_words import QUANTILES, duration, out_of, span_of
 from lithobrake.vocabulary.outcomes import FlightStatus
 from lithobrake.vocabulary.quantities import IMPACT_AZIMUTH, Row
 
 if TYPE_CHECKING:
-    from lithobrake.smallbody import Flights, Shape
+    from lithobrake.smallbody import Flights
     from lithobrake.smallbody.grounds import Moments
 
 # Coordinates of the sequence of a study beside the others.
 RELEASE = tuple(f"release {number}" for number in range(1, SIDE + 1))
-# Of a direction from the centre next to the pole, about which north is any.
-POLAR = 1e-9
-# A start so far below the ground is on it, of a millionth of the radius and at most [m].
-SLACK_PART, MOST_SLACK = 1e-6, 1e-3
 WORDS = {FlightStatus.ESCAPED: "escape", FlightStatus.PARTNER: "hit the planet"}
-
-
-def released_states(release: ReleaseSection, uniforms: Array, first: int, pole: Array) -> DeliveredStates:
-    """A state for each row of uniform numbers [count, 6], in the axes of the release, numbered from `first` on.
-
-    pole: of the body in these axes, [3].
-    """
-    from scipy.special import ndtri
-
-    mean = np.array([*release.position, *release.velocity])
-    # Clipped, as ndtri is infinite at 0 and 1, where a point of the sequence may lie.
-    states = mean + spread(release, pole, ndtri(np.clip(uniforms, 2.0**-54, 1.0 - 2.0**-53)))
-    source = [f"the release of journey {first + row}" for row in range(len(states))]
-    return DeliveredStates(source, np.full(len(states), release.time), states[:, :3], states[:, 3:])
-
-
-def spread(release: ReleaseSection, pole: Array, normal: Array) -> Array:
-    """How far each state is off [m, m/s], [count, 6], by independent standard normal numbers [count, 6]."""
-    root = spread_root(release, pole)
-    # Not by a matrix product, whose rounding depends on how many rows there are.
-    return np.stack([(normal * row).sum(axis=1) for row in root], axis=1)
-
-
-def spread_root(release: ReleaseSection, pole: Array) -> Array:
-    """A matrix whose product with its transpose is the covariance of the release, [6, 6]."""
-    if release.covariance is not None:
-        return _root(np.array(release.covariance))
-    root = np.zeros((SIDE, SIDE))
-    if release.position_std is not None and release.velocity_std is not None:
-        axes = local_axes(np.array(release.position), pole).T
-        root[:3, :3], root[3:, 3:] = axes * release.position_std, axes * release.velocity_std
-    return root
-
-
-def local_axes(position: Array, pole: Array) -> Array:
-    """Up, north and east in rows, [3, 3]; up is away from the centre of the body."""
-    size = np.linalg.norm(position)
-    up = position / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
-    east = np.cross(pole, up)
-    if np.linalg.norm(east) < POLAR:
-        east = np.cross(np.eye(3)[np.argmin(np.abs(up))], up)
-    east /= np.linalg.norm(east)
-    return np.stack([up, np.cross(up, east), east])
-
-
-def _root(covariance: Array) -> Array:
-    """The symmetric root of a covariance, by that of its correlations: entries have different units."""
-    variances = np.diag(covariance)
-    scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
-    # Made symmetric, as what was written may differ by rounding, and eigh reads one half only.
-    values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T) / np.outer(scale, scale))
-    # Rounding takes an eigenvalue of 0 below it.
-    root: Array = scale[:, None] * (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
-    return root
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +75,7 @@ class Descents:
             here = ground.at(clock)
             position, velocity = here.states_out_of_frame(position, velocity)
             into_body = here.axes.transpose(0, 2, 1) @ into_body
-        _refuse_below(site, position, uniform, clock, columns, states.source)
+        refuse_below(site, position, uniform, clock, columns, states.source)
         flights = fly(
             *(site.body, position, velocity, study.journey.duration),
             gravity=study.flight.gravity,
@@ -147,9 +86,9 @@ class Descents:
         down = _landed(flights)
         axes, incidence = _met_ground(study, flights, down, first)
         falling = [states.source[row] for row in np.flatnonzero(down).tolist()]
-        fastest = _refuse_fast(study, flights.impact_speed[down], falling)
+        fastest = refuse_fast(study, flights.impact_speed[down], falling)
         if states.rates is not None:
-            _refuse_spinning(study, states.rates, fastest, states.source)
+            refuse_spinning(study, states.rates, fastest, states.source)
         attitude, spin = _turning(states, into_body)
         return cls(site, first, flights, axes, incidence, attitude, spin)
 
@@ -274,23 +213,6 @@ def _states(site: Site, first: int, uniforms: np.ndarray) -> DeliveredStates:
     return with_offsets(delivery, released_states(delivery.release, uniforms, first, pole), pole)
 
 
-def with_offsets(delivery: DeliverySection, states: DeliveredStates, pole: Array) -> DeliveredStates:
-    """The states with the offsets of a delivery; pole: of the body in their axes, [3].
-
-    Directions are those at the mean position of a release, and at the position of each state of a file.
-    """
-    along, velocity = (np.array(one) for one in delivery.offsets)
-    if not (along.any() or velocity.any()):
-        return states
-    release = delivery.release
-    if release is None:
-        axes = np.stack([local_axes(position, pole) for position in states.position])
-    else:
-        axes = np.broadcast_to(local_axes(np.array(release.position), pole), (len(states.time), 3, 3))
-    moved = (np.einsum("k,nkj->nj", one, axes) for one in (along, velocity))
-    return replace(states, position=states.position + next(moved), velocity=states.velocity + next(moved))
-
-
 def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation | None, np.ndarray | None]:
     """Attitudes and spins at the start, fixed to the body."""
     if states.attitude is None or states.rates is None:
@@ -298,69 +220,6 @@ def _turning(states: DeliveredStates, into_body: np.ndarray) -> tuple[Rotation |
     # The scalar stands first in the file and last in SciPy.
     given = Rotation.from_quat(np.roll(states.attitude, -1, axis=1))
     return Rotation.from_matrix(into_body) * given, arrivals.turned(into_body, given.apply(states.rates))
-
-
-def _refuse_below(
-    site: Site, fixed: Array, uniform: Array, clock: Array, columns: Mapping[str, Array], source: Sequence[str]
-) -> None:
-    """Raise StudyError for a state below the ground of the body or of its partner.
-
-    Places [m], [count, 3], fixed to the body, and in the axes that turn uniformly, in which the partner moves; clock:
-    time of its motion at each [s], [count].
-    """
-    body, partner = site.body, site.body.partner
-    _refuse_within(site, body.shape, fixed, source, "the ground")
-    if partner is not None:
-        orbit = body.orbit_with(GRAVITATIONAL_CONSTANT * columns["mass"], 2.0 * np.pi / columns["spin_period"])
-        there, _ = orbit.seen_from_partner(uniform, np.zeros_like(uniform), clock)
-        _refuse_within(site, partner.body.shape, there, source, f"the surface of {partner.body.name}")
-
-
-def _refuse_within(site: Site, shape: "Shape", position: np.ndarray, source: Sequence[str], what: str) -> None:
-    # The height of a place takes a look at every facet.
-    near = np.flatnonzero(np.linalg.norm(position, axis=1) < shape.radius)
-    height = np.full(len(position), np.inf)
-    height[near] = shape.height(position[near])
-    below = np.flatnonzero(height < -min(SLACK_PART * shape.radius, MOST_SLACK))
-    if len(below):
-        row = int(below[0])
-        said = (
-            f"{_origin(site.study)}: {source[row]} lies {-height[row]:.3g} m below {what}; allowed: on it or above; is "
-            "it counted from the centre of the body, in metres and in the axes of delivery.frame? correct it, or lower "
-            "the spread"
-        )
-        raise StudyError([site.study.said(said)])
-
-
-def _origin(study: Study) -> str:
-    """The key that says where landers come from."""
-    return "delivery.states" if study.delivery and study.delivery.states else "delivery.release"
-
-
-def _refuse_fast(study: Study, speed: np.ndarray, source: Sequence[str]) -> float:
-    """Return the largest of impact speeds [m/s], 0 of none; source: where each of the landers stands.
-
-    Raises StudyError where it is too fast for any contact.
-    """
-    if not len(speed):
-        return 0.0
-    fastest = int(np.argmax(speed))
-    # The overlap depends on the stiffness, and a region may have softer grains than [grain].
-    for one in (study, *map(study.on_soil, study.soil)) if study.has_soil else ():
-        if wrong := deep_contact(one, float(speed[fastest])):
-            said = f"{_origin(study)}: {source[fastest]} comes down at {speed[fastest]:.4g} m/s {wrong}"
-            raise StudyError([study.said(f"{said}; lower its velocity, or raise Young's modulus")])
-    return float(speed[fastest])
-
-
-def _refuse_spinning(study: Study, rates: np.ndarray, speed: float, source: Sequence[str]) -> None:
-    """Raise StudyError where one of the angular velocities [count, 3] [rad/s] is too fast at a speed [m/s]."""
-    # In Python's own numbers: squares of absurd ones would overflow with a warning.
-    spins = [math.hypot(*one) for one in rates.tolist()]
-    fastest = int(np.argmax(spins))
-    arriving = study.model_copy(update={"impact": study.impact.model_copy(update={"speed": speed})})
-    if wrong := fast_spin(arriving, spins[fastest], lander_radius(study.lander)):
-        raise StudyError([study.said(f"{_origin(study)}: {source[fastest]}: its rates are {wrong}")])
 
 
 def descents_in_words(descents: Descents) -> str:

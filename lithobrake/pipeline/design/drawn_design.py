@@ -1,6 +1,5 @@
 """The design: every run has soil, place, azimuth, attitude and bed of its own, and no other run moves them."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,16 +12,16 @@ from lithobrake.files.reading import hashed_seed
 from lithobrake.geometry.attitude import uniform_attitude
 from lithobrake.pipeline.design.arrivals import Interval, on_local_ground, place_region
 from lithobrake.pipeline.design.bed_grounds import BedGrounds
+from lithobrake.pipeline.design.bed_order import beds_of_runs
 from lithobrake.pipeline.design.dependencies import touchdown_keys
 from lithobrake.pipeline.design.descents import RELEASE, Descents
 from lithobrake.pipeline.design.random_inputs import given_attitude
+from lithobrake.pipeline.design.side_designs import soil_pairs, twins
 from lithobrake.pipeline.site import Site
 from lithobrake.study import Study, StudyError
 from lithobrake.study.delivery_checks import correlated_keys, drawn_together
 from lithobrake.study.delivery_sections import PLACE_KEYS
-from lithobrake.study.ground_sections import MOST_BEDS
 from lithobrake.study.quantity import uncertain, usual_reach
-from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_INTERVAL
 from lithobrake.vocabulary.quantities import (
     ARRIVAL,
     IMPACT_AZIMUTH,
@@ -41,9 +40,6 @@ GRAIN = "grain."
 # Coordinates of the sequence beside the uncertain inputs. All are there in every study, used or not, so that a place or
 # an azimuth that is given leaves the others as they were.
 DRAWN = ("place x", "place y", "azimuth", "attitude 1", "attitude 2", "attitude 3")
-PAIR_COUNT, TWIN_COUNT = 20, 12
-# Side runs stand beside the first drawn runs, in their order, so that row k of theirs goes with row k of these.
-SIDE_DESIGNS = ("soil_pairs", "twins")
 
 
 def arriving_together(site: Site, rows: list[Row], first: int) -> list[Row]:
@@ -201,7 +197,11 @@ class DrawnDesign:
 
     def rows_of(self, design: str) -> list[Row]:
         """All inputs of the runs of a design: of "drawn", or of a side design, whose row k goes with run k."""
-        return {"drawn": lambda: self.rows, "soil_pairs": self._soil_pairs, "twins": self._twins}[design]()
+        if design == "drawn":
+            return self.rows
+        return (
+            twins(self.study, self.rows) if design == "twins" else soil_pairs(self.study, self.soil_inputs, self.rows)
+        )
 
     @property
     def coordinates(self) -> "dict[str, Distribution]":
@@ -312,25 +312,6 @@ class DrawnDesign:
     def _descents(self, first: int, points: np.ndarray) -> Descents:
         return Descents.flown(self.site, first, points[:, -len(RELEASE) :])
 
-    def _soil_pairs(self) -> list[Row]:
-        """The first runs again on a second soil: all uncertain inputs drawn anew, but bed, place, azimuth and attitude.
-
-        Their differences give the total effect of the soil. Source: [Jansen-1999].
-        """
-        from lithobrake.chaos import sobol_sequence
-
-        inputs, rows = self.soil_inputs, self.rows[:PAIR_COUNT]
-        if not inputs:
-            return rows
-        second = sobol_sequence(inputs, len(rows), hashed_seed(self.study.seed, "soil pairs")).tolist()
-        return [row | dict(zip(inputs, soil, strict=True)) for row, soil in zip(rows, second, strict=True)]
-
-    def _twins(self) -> list[Row]:
-        """The first runs again at places design.twin_shift [m] beside their own: what differs then is chaos."""
-        rows, shift = self.rows[:TWIN_COUNT], self.study.design.twin_shift
-        turns = np.random.Generator(np.random.PCG64(hashed_seed(self.study.seed, "twins"))).random(len(rows))
-        return [row | _beside(row, shift, 2.0 * math.pi * turn) for row, turn in zip(rows, turns, strict=True)]
-
 
 def _arrival(study: Study, uniform: Row) -> Row:
     """Azimuth and attitude of a run, as far as the study has them drawn or given, not uncertain by another law."""
@@ -339,35 +320,6 @@ def _arrival(study: Study, uniform: Row) -> Row:
     attitude = uniform_attitude(first, second, third) if drawn else given_attitude(study, first, second)
     row = dict(zip(ORIENTATION, (attitude / np.linalg.norm(attitude)).tolist(), strict=True))
     return row | ({IMPACT_AZIMUTH: 360.0 * uniform["azimuth"]} if study.impact.azimuth_deg == "random" else {})
-
-
-def beds_of_runs(study: Study, count: int) -> list[int]:
-    """Number of the bed of each of the first `count` runs; a larger count changes none."""
-    if study.bed.bed_count is not None:
-        return _in_blocks(study.seed, study.bed.bed_count, count)
-    few, many = FEWEST_BEDS_OF_INTERVAL * study.runs_a_bed, MOST_BEDS * study.runs_a_bed
-    # Blocks leave every run on its bed however many follow, and at each full block all beds have equally many.
-    first = _in_blocks(study.seed, FEWEST_BEDS_OF_INTERVAL, min(count, few))
-    growing = [run // study.runs_a_bed for run in range(few, min(count, many))]
-    # A bed is as new as any other, so the order in which they were filled so far says nothing.
-    return first + growing + _in_blocks(study.seed, MOST_BEDS, count - many)
-
-
-def _in_blocks(seed: int, bed_count: int, count: int) -> list[int]:
-    """Beds in permuted blocks; the first block in order, so that few runs take the first beds."""
-    blocks = range(1, -(-count // bed_count))
-    orders = [
-        np.random.Generator(np.random.PCG64(hashed_seed(seed, "beds of runs", bed_count, block))).permutation(bed_count)
-        for block in blocks
-    ]
-    return [int(bed) for order in (range(bed_count), *orders) for bed in order][: max(count, 0)]
-
-
-def _beside(row: Row, shift: float, direction: float) -> Row:
-    """A place beside that of a run, toward the middle of the bed: no twin may stand outside of it."""
-    step = shift * math.cos(direction), shift * math.sin(direction)
-    outward = math.fsum(row[name] * way for name, way in zip(PLACE, step, strict=True)) > 0.0
-    return {name: row[name] + (-way if outward else way) for name, way in zip(PLACE, step, strict=True)}
 
 
 def inputs_of(rows: Sequence[Mapping[str, float]], names: Sequence[str]) -> np.ndarray:

@@ -9,8 +9,9 @@ import numpy as np
 
 from lithobrake.chaos import smolyak_count
 from lithobrake.pipeline.design.dependencies import touchdown_keys
-from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.random_inputs import draw
+from lithobrake.pipeline.design.side_designs import SIDE_DESIGNS
 from lithobrake.pipeline.expansion.expansions import kept_inputs, points, replicate_count
 from lithobrake.pipeline.runs.beds import bed_recipe
 from lithobrake.pipeline.runs.landings import drawn_rows, landing_values

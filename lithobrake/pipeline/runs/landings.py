@@ -9,11 +9,12 @@ import numpy as np
 
 from lithobrake import campaign
 from lithobrake.campaign import run as run_campaign
-from lithobrake.campaign.external_model import PREFIX
+from lithobrake.campaign.model_server import PREFIX
 from lithobrake.campaign.single_run import Model
 from lithobrake.pipeline.design import dependencies
-from lithobrake.pipeline.design.drawn_design import SIDE_DESIGNS, DrawnDesign, inputs_of
+from lithobrake.pipeline.design.drawn_design import DrawnDesign, inputs_of
 from lithobrake.pipeline.design.random_inputs import draw
+from lithobrake.pipeline.design.side_designs import SIDE_DESIGNS
 from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.beds import compile_kernels
 from lithobrake.pipeline.runs.energy_bound import energy_warning, height_of_beds

@@ -16,11 +16,13 @@ from lithobrake.files.oem_reader import message_states
 from lithobrake.files.reading import hashed_seed
 from lithobrake.pipeline import stage_keys
 from lithobrake.pipeline.design.arrivals import against_ground, icrf_to_body, place_region, smallest_width, turned
+from lithobrake.pipeline.design.bed_order import beds_of_runs
 from lithobrake.pipeline.design.dependencies import bed_dependencies, bed_files, bed_setting, pour_seed, touchdown_keys
-from lithobrake.pipeline.design.descents import Descents, descents_in_words, spread, spread_root
-from lithobrake.pipeline.design.drawn_design import DrawnDesign, beds_of_runs
+from lithobrake.pipeline.design.descents import Descents, descents_in_words
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import attitude_terms, independent_terms, seen, with_side_down
 from lithobrake.pipeline.design.random_inputs import draw
+from lithobrake.pipeline.design.released_states import spread, spread_root
 from lithobrake.pipeline.planning.study_warnings import study_warnings
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import didymos, fly, tumble

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lithobrake.pipeline.design.descents import local_axes
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.design.released_states import local_axes
 from lithobrake.pipeline.journeys.delivered_landers import DeliveredLanders
 from lithobrake.pipeline.journeys.delivery_options import option_landers
 from lithobrake.pipeline.site import with_site_gravity
