@@ -2,7 +2,7 @@ from .campaign import RunOptions as RunOptions
 from .campaign import Runs as Runs
 from .campaign import run as run
 from .campaign import run_chains as run_chains
-from .executors import DaskExecutor as DaskExecutor
+from .dask_executor import DaskExecutor as DaskExecutor
 from .executors import LocalExecutor as LocalExecutor
 from .executors import WorkerDiedError as WorkerDiedError
 from .executors import available_cores as available_cores

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from lithobrake.geometry.mesh_units import UNITS, labelled_mesh, mesh_unit
-from lithobrake.study.impact_sections import RotationSection, SiteSection, kernel_problems
+from lithobrake.study.impact_sections import RotationSection, SiteSection
 from lithobrake.study.quantity import Scalar, median, usual_reach
+from lithobrake.study.site_kernels import kernel_problems
 from lithobrake.study.study import Study
 from lithobrake.vocabulary.constants import DAY, GRAVITATIONAL_CONSTANT
 from lithobrake.vocabulary.known_bodies import BUILT_IN_BODIES, body_named_in

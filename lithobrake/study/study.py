@@ -21,6 +21,7 @@ from lithobrake.study.delivery_sections import (
 from lithobrake.study.ground_kinds import GroundSection, ground_tables
 from lithobrake.study.lander_section import CentreSection, LanderSection
 from lithobrake.study.quantity import Scalar, Section, Uncertain, Whole, median
+from lithobrake.study.site_kernels import kernel_values
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.quantities import PLACE
 
@@ -178,7 +179,7 @@ class Study(Section):
 
         Raises ValueError or ImportError where the kernels do not tell any more what they did when the study was read.
         """
-        read = {f"site.{key}": value for key, value in impact_sections.kernel_values(self.site).items()}
+        read = {f"site.{key}": value for key, value in kernel_values(self.site).items()}
         return _scalars("site", self.site) | read
 
 

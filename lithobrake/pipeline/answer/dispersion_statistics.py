@@ -21,7 +21,7 @@ from lithobrake.results.run_results import CountedShare
 from lithobrake.results.site_results import KernelNumbers, SiteResults
 from lithobrake.results.study_files import results_in
 from lithobrake.study import BUILT_IN_BODIES, Study
-from lithobrake.study.impact_sections import kernel_partner, kernel_spin
+from lithobrake.study.site_kernels import kernel_partner, kernel_spin
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import ARCS_FILE, FLIGHT_CHECKS_FILE, TOUCHDOWNS_FILE
 from lithobrake.vocabulary.number_words import QUANTILES
