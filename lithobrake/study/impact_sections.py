@@ -148,9 +148,9 @@ class RotationSection(Section):
 
 class PartnerSection(Section):
     """The partner of a body that is read from a mesh, the other body of a binary or a planet: a sphere or a spheroid on
-    a circular orbit in the plane of the equator, which attracts and may be hit. Landers continue on it; on a planet their
-    journeys end. `period` or `distance` gives the orbit; with neither the body keeps one face to its partner, over
-    longitude 0."""
+    a circular orbit in the plane of the equator, which attracts and may be hit. Landers continue on it; on a planet
+    their journeys end. `period` or `distance` gives the orbit; with neither the body keeps one face to its partner,
+    over longitude 0."""
 
     name: str = "partner"
     """Name of the partner."""
