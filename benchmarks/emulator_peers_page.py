@@ -16,7 +16,7 @@ from page import table, write_page
 PUBLISHED_SPCE = {("bimodal", 400): 0.0201, ("bimodal", 800): 0.0149, ("bimodal", 1600): 0.0077}
 PUBLISHED_PROCESS = {("bimodal", 400): 0.068, ("bimodal", 800): 0.065, ("bimodal", 1600): 0.063}
 HEADS = {
-    OWN: "`fit`", "near rows": "near runs", "process and residuals": "Gaussian process", "forest rows": "forest",
+    OWN: "`fit`", "near rows": "nearby runs", "process and residuals": "Gaussian process", "forest rows": "forest",
     "Gaussian mixture": "mixture", ANY_RUN: "any run",
 }  # fmt: skip
 

@@ -57,10 +57,10 @@ def holds(first: Entry, second: Entry) -> bool:
 
 def draw_seeds(studies: list[Entry]) -> None:
     """Both answers, seed by seed."""
-    with figure(PAGES / "one_bed_seeds.png", 1, 2, (9.0, 4.0), dpi=150, sharey=True) as (_, axes):
+    with figure(PAGES / "one_bed_seeds.png", 1, 2, (7.4, 3.6), dpi=180, sharey=True) as (_, axes):
         for axis, kind, colour, title in (
-            (axes[0], "one place", TEST, "Paper method, one bed each"),
-            (axes[1], "draws", TRAINING, "Drawn method"),
+            (axes[0], "one place", TEST, "Expansion, one bed each"),
+            (axes[1], "draws", TRAINING, "Randomised landings"),
         ):
             found = of_kind(studies, kind)
             for one in found:
@@ -71,7 +71,7 @@ def draw_seeds(studies: list[Entry]) -> None:
             axis.axhline(middle, color=QUIET, lw=0.8, zorder=0)
             held = [holds(*pair) for pair in pairs(found)]
             axis.set_title(f"{title}: {min(shares):.0f} to {max(shares):.0f} %")
-            axis.set_xlabel(f"seed of the study (in {sum(held)} of {len(held)} pairs the intervals agree)")
+            axis.set_xlabel(f"seed of the study ({sum(held)} of {len(held)} pairs agree)")
             axis.set_xticks([one["seed"] for one in found][::2])
         axes[0].set_ylabel("return fraction [%]")
         # Room for the words below.

@@ -53,7 +53,7 @@ class LearntInput:
 
 @dataclass(frozen=True)
 class Posterior:
-    """The law of the inputs given the observations, as weighted points.
+    """Posterior distribution of the inputs, as weighted points.
 
     points [point_count, input_count] in physical units, of the inputs that all bounces share; weights [point_count],
     which sum to 1; effective_count: of so many equal points they are worth; log_evidence: logarithm of the mean
@@ -78,7 +78,7 @@ class Posterior:
         return self.points[random_numbers(seed).choice(len(self.points), size, p=self.weights)]
 
     def learnt(self) -> dict[str, LearntInput]:
-        """What was learnt of each input."""
+        """Each input before and after the observations, by name."""
         ends = [0.5 - 0.5 * LEVEL, 0.5, 0.5 + 0.5 * LEVEL]
         found = {}
         for (name, law), values in zip(self.inputs.items(), self.points.T, strict=True):
@@ -134,7 +134,7 @@ def infer(
     point_count: int = POINT_COUNT,
     seed: int = 0,
 ) -> Posterior:
-    """Infer the inputs of an emulator from observed runs of what it stands for, its inputs' laws being the prior.
+    """Infer the inputs of an emulator from observed bounces; its input distributions are the prior.
 
     own: inputs that each bounce draws anew, as its speed where that is not known; the others are those of all bounces.
     bounds: of the outputs at points [point_count, input_count], where they follow the inputs (as in `Emulator.sample`).

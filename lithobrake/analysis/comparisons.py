@@ -22,7 +22,7 @@ UNKNOWN = Estimate(math.nan, None, None)
 
 @dataclass(frozen=True)
 class BestChoice:
-    """The choice of the largest mean.
+    """The option with the largest mean, its bias-corrected fraction, and the options not distinguishable from it.
 
     best, runner_up  places among the choices; runner_up is None where only one was allowed
     shares           of refits in which each choice is the best, [choice_count]; 0 of those not allowed. No probability
@@ -86,7 +86,7 @@ def best_choice(
 
 
 def quantile_within(values: ArrayLike, probability: float, levels: tuple[float, float]) -> tuple[float, float, float]:
-    """Quantile of values [count] and its bounds, those at the levels that the share below it may have.
+    """Quantile of values [count], with bounds at the ends of the interval of the fraction below it.
 
     A bound beyond the outermost value is minus or plus infinity: so few values do not tell it. Raises ValueError for no
     value, one that is not finite, and a probability or levels outside 0 to 1.
@@ -171,7 +171,7 @@ def _scaled(draws: Array, bed_count: int) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class PairedDifference:
-    """The second study less the first, in the unit of the answer.
+    """Second study minus first study, in the unit of the result.
 
     first, second   the answer of each, from the pairs alone
     difference      NaN where one of them has no answer; without an interval where one of the studies cannot bound it

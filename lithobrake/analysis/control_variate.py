@@ -99,9 +99,9 @@ def ridge(terms: Array, degrees: Labels, y: Array) -> Array:
 
 
 def chaos_variance(differences: ArrayLike) -> Estimate:
-    """Variance that chaos alone gives an output, from differences [pair_count] of twins [unit of the output].
+    """Variance of an output due to chaos, from differences [pair_count] of runs 0.1 mm apart [unit of the output].
 
-    Twins differ in nothing that anyone could know, so half the mean square of their difference is the variance.
+    Such runs differ in nothing that can be measured, so half the mean square of their difference is the variance.
     NaN: not known. Raises ValueError where no difference is known, or one is infinite.
     Source: [Searle-1992], section 3.5 (chi-square interval).
     """
@@ -112,7 +112,7 @@ def chaos_variance(differences: ArrayLike) -> Estimate:
 
 
 def soil_total_effect(differences: ArrayLike, y: ArrayLike) -> Estimate:
-    """Share of an output's variance that goes with its soil, interactions with bed, place and attitude included.
+    """Total effect of the soil as a share of an output's variance, interactions included.
 
     differences [pair_count] between two soils of their own on the same bed, place and attitude; y [run_count]: the
     output over the input distributions, NaN where a run has none. The interval is that of a chi-square number which

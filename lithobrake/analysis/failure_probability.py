@@ -28,7 +28,7 @@ RUNS, EMULATOR = "runs", "emulator"
 
 @dataclass(frozen=True)
 class FailureInput:
-    """An input among failing landings beside the same over all.
+    """Distribution of an input among failing landings, compared with its input distribution.
 
     distance        largest difference of the two distribution functions (Kolmogorov's), 0 to 1; its interval by drawing
                     the beds anew
@@ -121,7 +121,7 @@ def _counts_of_beds(beds: np.ndarray, random: np.random.Generator) -> Array:
 
 @dataclass(frozen=True)
 class FailureProbability:
-    """Probability of a limit state over the law of the inputs, on beds that were not in the study.
+    """Probability of a limit state over the input distributions, on beds that were not in the study.
 
     probability                 from the runs where it is at least a fiftieth away from 0 and 1, else from the emulator
     source                      "runs" or "emulator"
@@ -148,7 +148,7 @@ def failure_probability(
     like_missing: ArrayLike | None = None,
     why: str | None = None,
 ) -> FailureProbability:
-    """Estimate the probability of a limit state from runs, and from draws of an emulator fitted to them.
+    """Estimate the probability of a limit state from runs and from samples of an emulator fitted to them.
 
     failing [run_count]  whether each run meets it, or the share of its flights that do; NaN where nobody knows
     bed [run_count]      label of the bed of each run: the units of the interval

@@ -66,7 +66,7 @@ def best_runs_a_bed(bed_cost: float, correlation: float = CORRELATION) -> float:
 
 
 def cost_over_best(runs_a_bed: float, best: float, bed_cost: float, correlation: float = CORRELATION) -> float:
-    """Time for an interval of one width with so many runs on each bed, over that with another number of them.
+    """Ratio of the times to reach one interval width with two numbers of runs on each bed.
 
     runs_a_bed, best, bed_cost (in runs): above 0. Student's t, which falls with more beds, is left out.
     Raises ValueError for numbers that cannot be. Source: [Cochran-1977], section 10.6.
@@ -82,7 +82,7 @@ def cost_over_best(runs_a_bed: float, best: float, bed_cost: float, correlation:
 def runs_for_half_width(
     half_width: float, runs_per_bed: int = 20, *, spread: float = SPREAD, correlation: float = CORRELATION
 ) -> int:
-    """Fewest runs, a whole number of beds of so many, whose expected half width is at most this one.
+    """Smallest number of runs (whole beds) whose expected half-width does not exceed the requested one.
 
     Raises ValueError for a half width below a millionth of the spread, and for numbers that cannot be.
     """
@@ -160,7 +160,7 @@ class LikeRuns:
 
 
 class HalfWidthRange(NamedTuple):
-    """Half widths that a twentieth of the studies are below, half of them, and all but a twentieth; shares of 1."""
+    """5 %, 50 % and 95 % quantiles of the half-width over studies, as fractions of 1."""
 
     lower: float
     median: float
@@ -171,7 +171,7 @@ def half_width_range(
     law: RunLaw, bed: ArrayLike, *, values: ArrayLike = (), values_bed: ArrayLike = (), missing: float = 0.0,
     correlation: float = CORRELATION, seed: int = 0,
 ) -> HalfWidthRange | None:  # fmt: skip
-    """Range that holds the half width of the 90 % interval of nine in ten studies; None for one bed.
+    """Range of the half-width of the 90 % interval in nine of ten studies; None for one bed.
 
     bed [run_count]      of each run that is still to come, any labels
     values, values_bed   outcomes of the runs that there are, 0 to 1 or NaN, and their beds [known_count]
@@ -269,7 +269,7 @@ def scatter_of(values: ArrayLike, bed: ArrayLike) -> tuple[float, float] | None:
 def next_run_count(
     values: ArrayLike, bed: ArrayLike, half_width: float, largest: int, bed_count_of: Callable[[int], int]
 ) -> int | None:
-    """How many runs to go on to, those that are there among them; None where it is enough.
+    """Total number of runs of the next round; None if the requested half-width is reached.
 
     values, bed [run_count]: answer of each run, 0 to 1 or NaN, and its bed. It is enough when half the interval is at
     most half_width, or with the largest count. bed_count_of: beds on which so many runs come down. The next count is

@@ -31,7 +31,7 @@ FEWEST_EFFECTIVE = 30.0
 def predictive_p_value(
     model: Emulator, posterior: Posterior, observation: Observation, *, bounds: Bounds | None = None, seed: int = 0
 ) -> float:
-    """Probability that a bounce which follows the posterior is as unlikely by it as the one that was observed.
+    """Posterior predictive p-value: probability of a bounce with a density as low as that of the observed one.
 
     A small one, below 0.05, says that the emulator, at no inputs that the prior allows, gives such bounces often: look
     for an error of the observation, or a thing that the model leaves out. observation: with outputs. bounds: as in
@@ -62,7 +62,7 @@ def predictive_p_value(
 
 @dataclass(frozen=True)
 class Identifiability:
-    """What observed bounces on one soil would say of an input.
+    """Expected reduction of an input's standard deviation by observed bounces on one soil.
 
     sd_ratio    standard deviation after over before, by number of bounces, as far as the points of the prior can tell
     bounces     how many halve it; None where none of these do
@@ -82,7 +82,7 @@ def identifiability(
     truths: int = TRUTHS,
     seed: int = 0,
 ) -> dict[str, Identifiability]:
-    """Tell, before anything is observed, how many bounces would halve the uncertainty of each input.
+    """Compute how many observed bounces would halve the standard deviation of each input.
 
     outputs: that would be observed of each bounce, with errors (standard deviations, by name). Soils are drawn from
     the prior, up to 128 bounces on each from the emulator, and the root mean square of what is left of the standard

@@ -98,7 +98,7 @@ def refit_interval(
     run_count: RunCounts | None = None,
     level: float = LEVEL,
 ) -> Estimate:
-    """Share of draws that have met an event, with its interval over beds that were not in the study.
+    """Fraction of emulator samples that meet an event, with its interval over beds that were not in the study.
 
     counts, totals [refit_count]: draws of each refit that have met it, and all of its draws, at least two. bed_count:
     beds that the emulator was fitted to. The scatter of the refits' shares, less what finite draws add, is the error of

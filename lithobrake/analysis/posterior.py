@@ -123,7 +123,7 @@ def by_bed(observations: Sequence[Observation]) -> list[list[int]]:
 
 
 def bed_shares(model: Emulator) -> dict[str, float]:
-    """Share of the scatter of each output that landings on one bed have in common, in the emulator's runs.
+    """Fraction of the variance of each output, at one soil, that beds cause in the emulator's runs.
 
     Raises ValueError where no bed has two runs.
     """
@@ -136,7 +136,7 @@ def bed_shares(model: Emulator) -> dict[str, float]:
 
 
 def beds_statement(model: Emulator, observations: Sequence[Observation]) -> str | None:
-    """What several bounces are taken to share, in a sentence; None for one bounce."""
+    """Sentence on which bounces share a bed; None for one bounce."""
     if len(observations) < 2:
         return None
     shared = [bed for bed in by_bed(observations) if len(bed) > 1]

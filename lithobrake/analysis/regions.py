@@ -54,7 +54,7 @@ class Ellipses:
 def dispersion_ellipses(
     latitude_deg: ArrayLike, longitude_deg: ArrayLike, shares: tuple[float, ...] = (0.5, 0.95)
 ) -> Ellipses | None:
-    """Ellipses that hold shares of places, both of shape [count]; None if these are few, all around, or one place.
+    """Ellipses that contain given fractions of places; None for few places, one place, or places all around the body.
 
     The places are laid flat about their mean direction, keeping distance and direction from it (azimuthal equidistant);
     the axes are those of their second moments, and each ellipse is as large as it takes to hold its share of them: no
@@ -144,7 +144,7 @@ class DensityRegion:
 
 @dataclass(frozen=True)
 class HighestDensity:
-    """Regions of highest density, one a share, none where `why` says why not.
+    """Regions of highest density, one for each fraction; empty, with the reason in `why`, if there are none.
 
     regions      in the order of the shares
     bandwidth_m  of the density along its longer and shorter axis; None without regions

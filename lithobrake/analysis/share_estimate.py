@@ -41,12 +41,12 @@ class _Mean(NamedTuple):
 
     @property
     def bed_count(self) -> int:
-        """Units of its error."""
+        """Number of beds, the independent units of the interval."""
         return int(self.beds.max()) + 1
 
     @property
     def error(self) -> float:
-        """Its standard error."""
+        """Standard error over beds."""
         return standard_error(self.values, self.beds)
 
 

@@ -127,7 +127,7 @@ def _numbers(comparison: Comparison, values: Values) -> list[Any]:
 
 @dataclass(frozen=True)
 class SubsetResult:
-    """What subset simulation found.
+    """Result of a subset simulation: probability, bounds, levels and failing points.
 
     probability                 of failure, its bounds from the coefficient of variation on the logarithmic scale
     coefficient_of_variation    standard deviation of the probability over itself, as the groups of points tell it

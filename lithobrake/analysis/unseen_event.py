@@ -22,7 +22,7 @@ RunCounts = int | Sequence[int]
 
 
 def upper_limit(unit_count: int, level: float = EXPANSION_LEVEL) -> float:
-    """Largest probability that an event may have, at a level of confidence, which none of so many units has met.
+    """Upper confidence limit of the probability of an event that occurred in none of so many independent units.
 
     Units are independent: runs that have no bed in common, or beds where runs on one may be alike (`unseen_limit`).
     Raises ValueError for a count below 0, and for a level outside 0 to 1.

@@ -50,7 +50,7 @@ class Runs:
 
 @dataclass(frozen=True)
 class RunOptions:
-    """Settings that few campaigns need.
+    """Seed, replicate, retries and log folder of a campaign.
 
     seed: of the random numbers of all runs; replicate: another one repeats the same inputs with other random numbers.
     retry_count: how often a failed run is tried again. log_folder: takes what each run prints; None keeps nothing.

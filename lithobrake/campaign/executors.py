@@ -68,7 +68,7 @@ class LocalExecutor(Executor):
 
     @property
     def capacity(self) -> int:
-        """Calls that are made at once."""
+        """Number of calls that run concurrently."""
         return self.worker_count
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":

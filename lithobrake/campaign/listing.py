@@ -127,7 +127,7 @@ def _cut(text: str, width: int) -> str:
 
 
 def missing(x: "np.ndarray", reasons: Sequence[str | None], names: Sequence[str], largest_share: float) -> str:
-    """Say how many runs of a design have failed, and why; the empty string for none.
+    """Sentence on the failed runs of a design and their reasons; empty if none failed.
 
     x: inputs, shape [run_count, len(names)]. reasons: why each run failed, None where it has not. largest_share: of
     failed runs that is accepted [-]. Raises ValueError when more have failed, or when those that did lie together on

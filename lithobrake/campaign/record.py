@@ -158,7 +158,7 @@ def lock_path(path: Path) -> Path:
 
 
 def campaign_began(path: str | PathLike[str]) -> str | None:
-    """When the campaign now at work on a ledger began (ISO, UTC); None if there is none."""
+    """Start time (ISO, UTC) of the campaign that is running on a ledger; None if there is none."""
     holder = lock_holder(lock_path(Path(path)))
     return holder.get("began") if holder else None
 
@@ -258,11 +258,12 @@ def per_time(rate: float, things: str = "") -> str:
 
 
 def duration(seconds: float) -> str:
+    """A duration [s] as text in whole units, such as "3 min"."""
     return duration_words(seconds, 0)
 
 
 def ledger_tally(records: Iterable[Record], began: str | None = None) -> Tally:
-    """Where a ledger stands, with the rate of the campaign that began at a moment (ISO, UTC) and is still at work.
+    """Counts of a ledger, with the rate of the campaign that began at a time (ISO, UTC) and is still running.
 
     began: None when not running; what is marked as running was then stopped, and counts among what is to be made.
     """

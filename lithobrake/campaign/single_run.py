@@ -150,7 +150,7 @@ def _logged(log: Path | None, inputs: Mapping[str, float], seed: int) -> Iterato
 
 @dataclass(frozen=True)
 class Limits:
-    """The most that one run may take: wall time [s] and memory [bytes], with all processes that it starts.
+    """Limits of one run, its child processes included: wall time [s] and memory [bytes].
 
     Raises ValueError for a limit that is not above 0, and for a memory limit where memory cannot be measured.
     """
@@ -179,7 +179,7 @@ class Limits:
 
 
 def run_key(inputs: Mapping[str, float], seed: int, replicate: int, context: Mapping[str, Any]) -> str:
-    """Name of a run: the hash of all that determines it.
+    """Key of a run: the hash of everything that determines its result.
 
     inputs: every number that the model is given. seed: seed of the study. replicate: which repetition.
     context: whatever else the result depends on (options, versions), as JSON values.

@@ -53,7 +53,7 @@ class Refit:
 def sobol_estimates(
     surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int = 500, level: float = EXPANSION_LEVEL, seed: int = 0
 ) -> dict[str, Any]:
-    """Sobol indices freed of the scatter of the training runs x, y, with confidence intervals by resampling residuals.
+    """Sobol indices, bias-corrected for scatter of the training runs x, y, with residual-bootstrap intervals.
 
     Result: "first" and "total", each [3 (estimate, lower, upper), input_count, output_count] (last axis dropped for a
     one-dimensional y): shares of the variance that the inputs give the expansion. An expansion's own indices are sums
@@ -85,7 +85,7 @@ def sobol_estimates(
 def coefficient_changes(
     surrogate: Surrogate, x: ArrayLike, y: ArrayLike, *, count: int, seed: int = 0
 ) -> tuple[Indices, Array]:
-    """How the coefficients change when the residuals of the training runs x, y fall on other runs.
+    """Changes of the coefficients when the residuals of the training runs x, y are resampled.
 
     Result: multi_indices [term_count, input_count], and changes [count, term_count, output_count] as `sobol_estimates`
     fits its draws; 0 for an output that does not vary.

@@ -171,7 +171,7 @@ def d_optimal(
     candidates: ArrayLike | None = None,
     seed: int = 0,
 ) -> Array:
-    """Choose `count` new points for the total-degree basis one by one, each where the fit knows least; physical units.
+    """Choose `count` new points for the total-degree basis greedily by D-optimality; physical units.
 
     existing: points already run [any, input_count], which the new ones extend. candidates: points to choose from
     (each at most once); None: random ones weighted by Christoffel. The determinant of the information matrix grows as

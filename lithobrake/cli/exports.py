@@ -145,7 +145,7 @@ def sites(
         )  # fmt: skip
     paths = [*write_site_map(found, source.content.decode(), place), write_site_cells(found, place)]
     beside = ", ".join(one.name for one in paths[1:])
-    lines = [*site_lines(found), f"Page: {paths[0].resolve()}", f"Beside it: {beside}"]
+    lines = [*site_lines(found), f"Page: {paths[0].resolve()}", f"In the same folder: {beside}"]
     arguments.tell_result(json, json_values(found), lines)
 
 

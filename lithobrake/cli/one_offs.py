@@ -207,7 +207,7 @@ def infer(
 ) -> None:
     """Infer the soil from observed bounces with the emulator of a study; writes posterior.json and posterior.png.
 
-    In a study of journeys to rest a first contact also tells the ground and the place of rest (nowcast.json).
+    In a study of journeys to rest, infer ground and place of rest from a first contact (nowcast.json).
     """
     from lithobrake.pipeline import InferredStudy, infer_study, is_first_contact, nowcast_study
 

@@ -42,7 +42,7 @@ class Draws:
 
 @dataclass(frozen=True)
 class Emulator(Parts):
-    """The law of a stochastic model's outputs at given inputs; `fit` makes one."""
+    """Conditional distribution of a stochastic model's outputs at given inputs; made by `fit`."""
 
     @property
     def outcome_names(self) -> tuple[str, ...]:

@@ -22,7 +22,7 @@ NORMAL_NODES = 16
 
 @dataclass(frozen=True)
 class OutputLaw:
-    """The distribution of one output at points, of runs that have outputs; `Emulator.output_law` makes one.
+    """Distribution of one output at given points, among runs with outputs; made by `Emulator.output_law`.
 
     normals: in the coordinate of the output, itself or its logit or logarithm. lower, upper [point_count, 1]: bounds;
     bending: those of them that the coordinate has, infinite else.

@@ -73,7 +73,7 @@ def pit(values: Array, weights: Array, observed: Array) -> Array:
 
 @dataclass(frozen=True)
 class Scores:
-    """Of runs in groups left out, coordinates in units of their spread; the smaller a score, the better.
+    """Scores on held-out groups, in coordinates divided by their spread; smaller is better.
 
     energy, energy_of_rows: mean energy scores of the law and of drawing rows alone. gain: their mean difference, and
     gain_error its standard error over groups; both are 0 where rows alone were chosen. crps_skill: 1 - CRPS / CRPS of

@@ -30,7 +30,7 @@ _EACH = (
 
 @dataclass(frozen=True)
 class ExportOptions:
-    """What a user may choose of the files.
+    """Options of exported files: flights, frame, epoch, step, resolution.
 
     samples       whose flights or attitudes are passed on, by their number in flights.csv, or of journeys
     frame         "inertial": axes that do not turn and are the body's at the epoch; "fixed": body-fixed axes; "icrf":

@@ -129,7 +129,7 @@ def _without_emulator(path: Path, study: Study) -> str:
 
 @dataclass(frozen=True)
 class InferredStudy:
-    """A study that ran, and its emulator."""
+    """A finished study and its emulator of the first touchdown."""
 
     study: Study
     folder: StudyFolder

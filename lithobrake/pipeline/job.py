@@ -90,7 +90,7 @@ def same_files(*names: str) -> Callable[[Study], list[str]]:
 
 @dataclass(frozen=True)
 class Stage:
-    """A step of a study.
+    """One stage of a study: its files, its inputs, and the function that writes them.
 
     files: what it writes. make: writes it. after: stages whose files it reads. dependencies: what of the study it
     depends on, as JSON values. parts: rooms and files of the package whose code decides what it writes, beside those of

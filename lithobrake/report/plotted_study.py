@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class PlottedStudy(StudyResults):
-    """What came out of a study, and its figures; what `lithobrake.run` and `lithobrake.open_study` return."""
+    """Results of a study with figures (`plot`); returned by `lithobrake.run` and `lithobrake.open_study`."""
 
     @cached_property
     def plot(self) -> "StudyPlots":

@@ -29,15 +29,15 @@ class RestRegion:
 
 @dataclass(frozen=True)
 class ImpactNumber(Inlined):
-    """A number of the flights that end on the body: of the drawn landers, or of samples."""
+    """A number of the flights that end on the body: of the landers, or of samples."""
 
     quantiles: Mapping[str, float] = field(metadata=INLINE)
     """by level, as "quantile_0.5" """
     intervals: Mapping[str, tuple[float, float] | None] | None = None
-    """of drawn landers: lower and upper bound (90 %) of each quantile over beds not in the study; null where there is
+    """of landers: lower and upper bound (90 %) of each quantile over beds not in the study; null where there is
     none"""
     of: str | None = None
-    """of drawn landers: which landings it describes, in words"""
+    """of landers: which landings it describes, in words"""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ class FlightChecks:
 
 @dataclass(frozen=True)
 class FlightResults(Inlined):
-    """The flights that end on the body, of the drawn landers or of samples, and how exact all flights are."""
+    """The flights that end on the body, of the landers or of samples, and how exact all flights are."""
 
     impacts: ImpactNumbers = field(default=ImpactNumbers(), metadata=INLINE)
     checks: FlightChecks | None = field(default=None, metadata=INLINE)

@@ -9,8 +9,8 @@ from lithobrake.vocabulary.plain_text import short_repr
 
 @dataclass(frozen=True)
 class OverGrounds:
-    """What a body with one ground throughout would give, where nobody knows which: each value is that over all grounds
-    of the study, and its bounds hold that of one ground with the probability of the level."""
+    """Results for a body with one unknown ground: each value is that over all grounds of the study, and its bounds
+    contain that of one ground with the probability of the level."""
 
     at_rest: Share
     """fraction of the landers that comes to rest"""
@@ -25,7 +25,7 @@ class OverGrounds:
 
 @dataclass(frozen=True)
 class FinerGround:
-    """Ground whose grains are finer than any that are simulated: beds of the finest stand for it."""
+    """Ground whose grains are finer than any that are simulated: beds of the finest grains represent it."""
 
     finest_m: float
     """mean diameter of these beds [m]"""

@@ -57,7 +57,7 @@ class MeanMiss:
     north_on_one_ground_m: Number | None
     """the same"""
     aim_latitude_deg: float
-    """latitude at which to aim instead: as far from the aim point, the opposite way"""
+    """latitude of the corrected aim point, shifted by the mean in the opposite direction"""
     aim_longitude_deg: float
     """longitude of it"""
     latitude_deg: float
@@ -65,8 +65,8 @@ class MeanMiss:
     longitude_deg: float
     """longitude of the mean"""
     is_distinct: bool
-    """whether it can be told from none: one of the two numbers, on one ground where there is one, leaves out 0 with an
-    interval of 95 %, so that both together hold at 90 % (Bonferroni)"""
+    """whether the mean differs significantly from the aim point: the 95 % interval of one of the two numbers (on one
+    ground, where there is one) excludes 0; joint level 90 % (Bonferroni)"""
     __repr__ = short_repr
 
 

@@ -115,7 +115,7 @@ class TouchdownFacts:
 
 @dataclass(frozen=True, eq=False)
 class JourneyTrack:
-    """Where one lander went, in what order, and how it ended.
+    """Places of one lander in order, and its end.
 
     row: of the table `journeys`, nothing where it has nothing. aim: latitude and longitude of the aim point [deg];
     radius: of the body there [m]; vertices of the body [m], shape [vertex, 3], body-fixed. descent: time from delivery
@@ -133,7 +133,7 @@ class JourneyTrack:
 
     @property
     def number(self) -> int:
-        """Of the journey, from 0."""
+        """Number of the journey, from 0."""
         return int(self.row["journey"])
 
     @property

@@ -40,7 +40,7 @@ class SideRuns:
 
 @dataclass(frozen=True)
 class RunResults:
-    """The first touchdowns of the drawn landers, without auxiliary runs."""
+    """The first touchdowns of the landers, without auxiliary runs."""
 
     count: int
     """runs"""
@@ -190,8 +190,8 @@ class ReturnFraction(LandingFraction):
     """
 
     share: Annotated[Estimate, Keyed("share", has_level=True, has_reason=False)] = field(metadata=INLINE)
-    """return fraction over the input distributions of the study file: of the drawn landers, where those without an
-    outcome get the mean of those that left in flight across the edge of the bed; if none was drawn, of the samples of
+    """return fraction over the input distributions of the study file: of the landers, where those without an
+    outcome get the mean of those that left in flight across the edge of the bed; without landers, of the samples of
     the expansion"""
     emulator: float | None
     """the fraction from the emulator or the expansion, of the samples whose end is known"""
@@ -226,7 +226,7 @@ class SampleShares(Inlined):
 
 @dataclass(frozen=True)
 class RunShares(Inlined):
-    """Outcomes of the first touchdowns of the drawn landers, from 64 flights of each. impact, flying (at the end of
+    """Outcomes of the first touchdowns of the landers, from 64 flights of each. impact, flying (at the end of
     flight.duration), escaped, partner and captured add up to 1. returns: impact, plus captured where the site holds the
     lander. settled and lofted: captured where gravity and rotation hold the lander, or do not. missing: left_sideways,
     time_limit, failed.

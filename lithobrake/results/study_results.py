@@ -45,7 +45,7 @@ _ASKED = {
 
 
 class StudyResults(StudyTables):
-    """What came out of a study; every table says of its columns what they are.
+    """Results of a study: tables whose columns have units and meanings, the summary, emulator and figures.
 
     Nothing is written: it works on a folder that may only be read, on an archived copy, and beside a study that runs,
     as far as that has come. Whatever is asked for raises ValueError, with what to do, where its file is damaged, was

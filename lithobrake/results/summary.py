@@ -17,7 +17,7 @@ from lithobrake.vocabulary.plain_text import short_repr
 
 @dataclass(frozen=True)
 class Estimates:
-    """What the drawn landers say of their first touchdown, as estimates.json holds it."""
+    """Results of the first touchdowns of the landers, as estimates.json holds it."""
 
     returns: run_results.ReturnFraction
     shares: run_results.RunShares
@@ -42,15 +42,15 @@ class Results:
     beds: tuple[BedNumbers, ...]
     site: SiteResults
     ends: Mapping[str, run_results.CountedShare]
-    """how the landers ended: at_rest, escaped, partner, under_way, failed; empty if none was drawn"""
+    """how the landers ended: at_rest, escaped, partner, under_way, failed; empty without landers"""
     journeys: int
     """landers that were followed"""
     touchdowns: int
     """landings that were simulated for them"""
     rest: journey_results.JourneyRest | None
-    """where, when and how the landers come to rest; null if none was drawn"""
+    """where, when and how the landers come to rest; null without landers"""
     delivery: journey_results.DeliveryResults | None
-    """place and state of the first impacts; null if no lander was drawn"""
+    """place and state of the first impacts; null without landers"""
     returns: run_results.ReturnFraction
     shares: run_results.RunShares
     flights: dispersion.FlightResults
@@ -80,7 +80,7 @@ class Results:
     limit_states: Mapping[str, LimitStateResult]
     """each limit state of the study file; empty if it has none"""
     emulator: model_results.EmulatorResults | None
-    """the emulator of the first touchdown; null if too few landers leave for one, or none was drawn"""
+    """the emulator of the first touchdown; null if too few landers leave for one, or there are none"""
     emulated: journey_results.EmulatedJourneys | None
     """landers that the emulator of all touchdowns followed to rest; null with journey.emulated_count = 0"""
     hard_ground: Mapping[str, dispersion.FollowedLanders]

@@ -46,7 +46,7 @@ class Column:
 
 
 class Table(Mapping[str, np.ndarray]):
-    """Columns by name, all of the same length; `table["speed_out"]` gives the values, `table.columns` what they are."""
+    """Columns by name, of equal length; `table["speed_out"]` gives values, `table.columns` units and meanings."""
 
     def __init__(self, row: str, columns: Mapping[str, Column]) -> None:
         """Keep the columns; row: what one row is, in a word. Raises ValueError for columns of different lengths."""

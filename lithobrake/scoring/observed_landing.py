@@ -46,7 +46,7 @@ class Place:
 
 @dataclass(frozen=True)
 class ObservedLanding:
-    """What is known of how a landing ended; what is not known is absent.
+    """Observed end of a landing; unobserved quantities are None.
 
     end: one of ENDS; numbers: by the names of NUMBERS; face: side of the lander that faces the ground, by its own axes;
     source: where the numbers are published.

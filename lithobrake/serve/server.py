@@ -35,7 +35,7 @@ LARGEST = 1 << 20
 
 
 class ClientGoneError(ConnectionError):
-    """A client that has left before its answer."""
+    """Raised when a client disconnects before it receives its result."""
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,7 @@ class Rebounds:
 
 
 Bounce = Callable[[Impacts, np.random.Generator], Rebounds]
+"""Model of a rebound: a function of impacts and a random generator that returns the rebounds, in the same order."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,7 @@ class HardSurface:
 
 @dataclass(frozen=True)
 class RestitutionTable:
-    """A bounce by draws from quantiles in cells of speed and incidence; an impact beyond them is that of the next cell.
+    """Bounce sampled from quantiles in cells of speed and incidence; impacts beyond them use the nearest cell.
 
     speed [m/s] and incidence_deg: edges of the cells, [speed_count + 1] and [incidence_count + 1]
     quantiles     at LEVELS by name, [speed_count, incidence_count, level_count]: outgoing over incoming velocity along

@@ -16,7 +16,7 @@ LEAST_GAIN = 1e-12
 
 @dataclass(frozen=True)
 class Imager:
-    """What an image shows.
+    """Field of view and detection limits of a camera.
 
     field [rad]: full angle of the cone within the image; pixel [rad]: angle of a pixel; pixels: along the lander's
     size, so many are needed to recognise it; emission, sun [rad]: largest angle between the ground's normal and the
@@ -41,7 +41,7 @@ class Imager:
 
 @dataclass(frozen=True, eq=False)
 class ImageWindow:
-    """An image that is worth taking.
+    """A selected image, its boresight, and the places that it shows.
 
     image: number of the opportunity; boresight: unit vector, body-fixed, [3]; shown: places that it shows, [count];
     gain: weight of those that no earlier window shows.
@@ -56,7 +56,7 @@ class ImageWindow:
 def recognised(
     shape: Shape, places: ArrayLike, up: ArrayLike, orbiter: ArrayLike, sun: ArrayLike, size: float, camera: Imager
 ) -> tuple[NDArray[np.bool_], Floats]:
-    """Whether a lander at each place would be recognised in an image, were the camera pointed at it.
+    """Whether a lander at each place could be detected in an image, if the camera points at it.
 
     places [m] and outward normals up of the ground, [count, 3]; orbiter [m] and sun (any length), body-fixed, of each
     image, [image_count, 3]; size [m]: longest extent of the lander. It is recognised where the Sun lights its place,

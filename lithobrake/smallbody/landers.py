@@ -51,7 +51,7 @@ def on_ground(shape: "Shape", point: np.ndarray) -> np.ndarray:
 
 @dataclass(kw_only=True)
 class Landers(LanderStates):
-    """Landers that are followed; as LanderStates."""
+    """LanderStates that are followed from touchdown to touchdown."""
 
     def impacts(self, which: Integers) -> ImpactStates:
         """The impacts of some landers that are under way."""

@@ -20,7 +20,7 @@ FARTHEST, HALVINGS = 9.0, 60
 
 
 def met_normals(velocity: Array, up: Array, roughness: float, uniforms: Array) -> Array:
-    """Unit normals of the ground that landers meet, [count, 3], in the axes of the velocities.
+    """Unit normals of the ground at the impacts, [count, 3], in the axes of the velocities.
 
     velocity [m/s] and up, unit normals of the ground without roughness, both [count, 3]; roughness: the angle [rad]
     whose tangent is the root mean square of the gradient, from 0 to below a right angle; uniforms [count, 2]: numbers

@@ -30,7 +30,7 @@ def out_of_frame(axes: Array, vectors: Array) -> Array:
 
 @dataclass(frozen=True)
 class ImpactStates:
-    """Landers as they meet the ground; one entry or row an impact, vectors fixed to the body that is met.
+    """States of landers at impact; one entry or row for each, vectors fixed to the body that is hit.
 
     lander         its place among all that are followed, and number of the touchdown among those of the lander, from 0
     ground         that is met: its place among those of `grounds_of`, 0 the first body's, 1 its partner's
@@ -134,6 +134,6 @@ def horizontal_velocity(impacts: ImpactStates) -> Array:
 
 
 class Touchdown(Protocol):
-    """Says how touchdowns end: a simulated landing, an emulator, hard ground, a program of the user's."""
+    """Model of a touchdown: a simulated landing, an emulator, hard ground, or a program of the user."""
 
     def answers(self, impacts: ImpactStates) -> Answers: ...

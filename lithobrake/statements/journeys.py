@@ -13,7 +13,7 @@ from lithobrake.statements.labels import (
     smallest_region,
     two_digits,
 )
-from lithobrake.statements.touchdowns import detected_parts, floor_words, variance, variance_parts
+from lithobrake.statements.touchdowns import floor_words, variance
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.limit_state import LimitState
 from lithobrake.vocabulary.number_words import (
@@ -22,6 +22,7 @@ from lithobrake.vocabulary.number_words import (
     MINUTE,
     as_sentence,
     intervals,
+    listing,
     out_of,
     percent,
     with_interval,
@@ -251,17 +252,18 @@ def attitude(rest: "JourneyRest") -> str:
 
 
 def end_variance(results: "Results") -> str:
-    """The figure of what decides the ends; empty where the journeys cannot tell."""
+    """Caption of the figure of the parts of the variance of the ends; empty where journeys do not show them."""
     known = {name: one for name, one in results.end_variance_shares.items() if one}
     signs = {name: END_SIGNS.get(name, f"whether it meets {name}") for name in known}
-    said = [variance_parts(f"{signs[name]} ({one.of})", detected_parts(one)) for name, one in known.items()]
-    if said:
-        said.append(
-            "Delivery: position and velocity of the first impact, without attitude. Everything else includes all later "
-            "touchdowns."
-        )
-        said.append(floor_words(next(iter(known.values()))))
-    return " ".join(said)
+    if not known:
+        return ""
+    first = next(iter(known))
+    whole = listing([f"{signs[name]} ({one.of})" for name, one in known.items()])
+    return (
+        f"Parts of the variance of {whole} over the input distributions of the study file. Delivery: position and "
+        "velocity of the first impact, without attitude. Everything else includes all later touchdowns. "
+        f"{floor_words(signs[first], known[first])}"
+    )
 
 
 def first_variance(data: "PageData") -> str:

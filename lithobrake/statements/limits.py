@@ -56,7 +56,7 @@ def journey_state(name: str, found: "LimitStateResult") -> str:
     if found.if_aimed is not None:
         said[0] += f"; with the mean on the aim point it would be {with_interval(found.if_aimed)}"
     if runs.missing > 0.0:
-        said.append(f"{unknown_outcome(runs.missing)}, and the interval holds whatever became of them")
+        said.append(f"{unknown_outcome(runs.missing)}, and the interval covers all their possible ends")
     if found.grounds:
         kinds = ", ".join(f"{kind} {with_interval(share)}" for kind, share in found.grounds.items())
         said.append(f"By kind of ground: {kinds}")

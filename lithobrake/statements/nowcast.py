@@ -98,7 +98,7 @@ def _rest(found: Mapping[str, Any]) -> list[str]:
     if rest["unknown"] > 0.0:
         said.append(f"Ends that the emulator does not know: {percent(rest['unknown'], 1)}.")
     if rest["unknown"] > MOST_UNKNOWN:
-        said.append(f"These are more than {percent(MOST_UNKNOWN)}, so time and place of rest are not told.")
+        said.append(f"These are more than {percent(MOST_UNKNOWN)}, so no time and place of rest are given.")
     if rest["time_s"]["after"][1] is None:
         return said
     lower, middle, upper = rest["time_s"]["after"]
@@ -108,7 +108,7 @@ def _rest(found: Mapping[str, Any]) -> list[str]:
     told = [f"{_number(rest[name], 'm', level)} {words}" for name, words in ways.items()]
     said.append(f"Place of rest: {listing(told)}.")
     if not rest["sides"]:
-        said.append("Side down: too few simulated journeys had a like contact to tell.")
+        said.append("Side down: too few simulated journeys had a similar contact.")
     else:
         sides = [f"{side} {_share(one, level)}" for side, one in rest["sides"].items()]
         said.append(f"Side down, by simulated journeys with a like contact: {'; '.join(sides)}.")

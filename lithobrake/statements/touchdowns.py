@@ -99,40 +99,32 @@ def run_outcomes(results: "Results") -> str:
     return " ".join([f"On {counted(results.runs.beds, 'bed')}.", *missing_landings(results.runs, results.returns)])
 
 
-def variance_parts(what: str, parts: str) -> str:
-    """What explains the variance of something; parts: its parts with their intervals."""
-    return f"Parts of the variance of {what}: {parts} ({intervals()})."
-
-
 def output_variance(name: str, record: "VarianceParts") -> str:
-    """What explains the variance of an output."""
+    """Parts of the variance of an output with their intervals, in a sentence."""
     whole = f"the {labels.output_words(name)} over the input distributions of the study file"
-    return variance_parts(whole, all_parts(record))
+    return f"Parts of the variance of {whole}: {all_parts(record)} ({intervals()})."
 
 
 def variance(results: "Results") -> str:
-    """The figure of what decides."""
+    """Caption of the figure of the parts of the variance, which shows them with their intervals."""
     records = {name: record for name, record in results.variance_shares.items() if record}
     if not records:
         return "The sources of the scatter cannot be separated: the runs are on one bed, or too few for their inputs."
-    first, *others = records
-    said = [output_variance(first, records[first])]
-    if others:
-        soils = [f"{part(records[name].soil)} of the {labels.output_words(name)}" for name in others]
-        said.append(f"Soil, at least: {listing(soils)}.")
-    said.append(floor_words(records[first]))
+    said = ["Parts of the variance of the first touchdown over the input distributions of the study file."]
+    first = next(iter(records))
+    said.append(floor_words(f"the {labels.output_words(first)}", records[first]))
     if all(record.chaos is None for record in records.values()):
         said.append("Without auxiliary runs chaos is not separated from everything else.")
     return " ".join(said)
 
 
-def floor_words(record: "VarianceParts") -> str:
-    """Of which degree the parts are lower bounds, and for which ranges."""
+def floor_words(what: str, record: "VarianceParts") -> str:
+    """Of which degree the parts are lower bounds, and the part of the soil of what with wider ranges."""
     doubled = record.soil_doubled
     explains = f"at least {part(doubled)}" if doubled.value > 0.0 else part(doubled)
     return (
-        f"Soil, delivery and attitude: {record.terms}, for the ranges of the study file; their other effects "
-        f"are in everything else. Soil with ranges twice as wide: {explains}."
+        f"Soil, delivery and attitude: {record.terms}; their other effects are in everything else. Soil with ranges "
+        f"twice as wide ({what}): {explains}."
     )
 
 
@@ -145,17 +137,6 @@ def all_parts(record: "VarianceParts") -> str:
         # What is not detected is not "at least" so much.
         found.append(f"{whose if one.value > 0.0 else NAMES.get(name, whose)} {part(one, more)}")
     return listing(found)
-
-
-def detected_parts(record: "VarianceParts") -> str:
-    """What of an output's variance is detected, likewise, but for everything else."""
-    detected = {name: one for name, one in record.parts.items() if one.value > 0.0 and name != "place"}
-    if not detected:
-        return "none is detected"
-    whose = [
-        f"{NAMES.get(name, name)}{' at least' if name != 'bed' else ''} {part(one)}" for name, one in detected.items()
-    ]
-    return listing(whose)
 
 
 def _main_input(record: "VarianceParts") -> str:

@@ -165,8 +165,8 @@ class DeliverySection(quantity.Section):
     """File of states from another tool, relative to the study file, one state per journey in the order of the file: a
     table (CSV) with columns such as time_s, x_m and vx_m_s, or an ephemeris message (OEM); docs/delivery.md."""
     offset_up: Offset | None = None
-    """Added to the position of every state or release: away from the centre of the body. What may be chosen of a
-    release; `aim.grid` compares several."""
+    """Added to the position of every state or release: away from the centre of the body. `aim.grid` can
+    compare several values."""
     offset_north: Offset | None = None
     """The same toward north at that position."""
     offset_east: Offset | None = None
@@ -210,8 +210,8 @@ class JourneySection(quantity.Section):
     little energy to leave it. Absent: three times the lander's largest diameter; 0 with touchdowns = 1."""
     emulated_count: Annotated[int, quantity.Whole("", at_least=0, at_most=1_000_000)] | None = None
     """Number of further landers that the emulator of all touchdowns follows to rest, as a check and to narrow the
-    intervals of the fractions of all ends. 0: none. Absent: 5000; none with touchdowns = 1, whose emulator knows the
-    first impacts alone."""
+    intervals of the fractions of all ends. 0: none. Absent: 5000; none with touchdowns = 1, whose emulator is
+    trained on first impacts alone."""
 
 
 def arrival_key(name: str) -> str:

@@ -29,17 +29,18 @@ SkyBody = Literal["sun", "earth", "orbiter"]
 
 
 class DesignSection(Section):
-    """How many landers are drawn: every one has its own soil, impact point, azimuth and attitude, on many beds."""
+    """Number of landers; each has its own soil, impact point, azimuth and attitude, on one of many beds."""
 
     # 20 landings on each of 12 beds; with fewer beds Student's t widens the interval (docs/estimates.md).
     run_count: Annotated[int, Whole("", at_least=0, at_most=1_000_000)] = 240
-    """Number of landers; a larger one keeps those of a smaller one, each on its bed. 0, only with [expansion]: none is
-    drawn, and the expansions are all of the study."""
+    """Number of landers; a larger one keeps those of a smaller one, each on its bed. 0, only with [expansion]:
+    the study has expansions alone."""
     half_width: Annotated[float, Number("", above=0, below=0.5)] | None = None
     """Requested half-width of the interval of the result, as a fraction of 1. More runs than run_count are made, on
     more beds, until it is reached. Absent: run_count runs, whatever their interval."""
     half_width_of: StrictStr | None = None
-    """Name of the limit state to whose probability half_width applies. Absent: it applies to the return fraction."""
+    """Name of the limit state to whose probability half_width applies. Absent: it applies to the
+    fraction at rest, or with journey.touchdowns = 1 to the return fraction."""
     largest_run_count: PointCount = None
     """Largest number of runs with half_width. Absent: ten times run_count."""
     # Strict, as pydantic would take "yes", "off" and 1 for truth values.

@@ -47,19 +47,19 @@ class GroundKind(Section):
 
 class GroundSection(Section):
     """What the ground may be, in place of the sizes of [bed]: each bed is of a kind that is sampled by its weight, with
-    grains of a size of its own. Answers then hold over all grounds that the study allows, and their intervals include
-    that the ground is unknown."""
+    grains of a size of its own. Results then hold over all grounds that the study allows, and their intervals include
+    the uncertainty of the ground."""
 
     unknown: Literal["everywhere", "patchy", "both"] = "everywhere"
-    """"everywhere": the body has one ground, and nobody knows which: each bed stands for a body of its own, and a
-    lander stays on its bed. "patchy": the ground differs from place to place, and a lander that flies farther than
-    ground.patch meets another bed. "both": the body is patchy, and nobody knows of what: each bed stands for a body of
-    its own, whose patches have the weights that it draws; a ground.kind.weight is then uncertain."""
+    """"everywhere": the body has one unknown ground: each bed represents one possible body, and a lander
+    keeps its bed. "patchy": the ground differs from place to place, and a lander that flies farther than
+    ground.patch meets another bed. "both": the body is patchy, with unknown fractions: each bed represents one possible
+    body, whose patches have sampled weights; a ground.kind.weight is then uncertain."""
     patch: Annotated[float, Number("m", at_least=1e-3, at_most=1e6)] = Field(default=20.0, examples=["20.0"])
     """Distance over the ground after which a lander meets another bed, if ground.unknown is "patchy" or "both"."""
     finest: Annotated[float, Number("m", above=0)] | None = None
-    """Smallest mean diameter of grains that are simulated: beds of this size stand for finer ground, and the answer
-    says for how much of it. Absent: a third of the largest diameter of the lander."""
+    """Smallest mean diameter of grains that are simulated: beds of this size represent finer ground, whose
+    fraction the results state. Absent: a third of the largest diameter of the lander."""
     kind: dict[str, GroundKind] = Field(default={})
 
 

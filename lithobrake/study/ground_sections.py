@@ -111,7 +111,7 @@ class BedSection(Section):
     exponent is smaller by 1. Both are written positive."""
     bed_count: Annotated[int, Whole("", at_least=1, at_most=MOST_BEDS)] | None = None
     """Number of beds; with more than one, the bed of each run is sampled. Absent: with journey.touchdowns
-    = 1 one bed for every 20 landers, otherwise one for every 4 (rounded up), at least 12; one where none is drawn."""
+    = 1 one bed for every 20 landers, otherwise one for every 4 (rounded up), at least 12; one without landers."""
     seed: Annotated[int, Whole("", at_least=0, at_most=2**53)] | None = None
     """Seed of the first bed; the following beds have the following numbers. Absent: it follows from the seed of the
     study."""

@@ -141,10 +141,10 @@ class RotationSection(Section):
 
 
 class PartnerSection(Section):
-    """The partner of a body that is read from a mesh, the other body of a binary or a planet: a ball or a spheroid on a
-    circular orbit in the plane of the equator, which attracts and may be hit. Landers go on there; on a planet they
-    end. `period` or `distance` gives the orbit; with neither the body keeps one face to its partner, over longitude
-    0."""
+    """The partner of a body that is read from a mesh, the other body of a binary or a planet: a sphere or a spheroid on
+    a circular orbit in the plane of the equator, which attracts and may be hit. Landers continue on it; on a planet
+    their journeys end. `period` or `distance` gives the orbit; with neither the body keeps one face to its partner,
+    over longitude 0."""
 
     name: str = "partner"
     """Name of the partner."""
@@ -153,7 +153,7 @@ class PartnerSection(Section):
     diameter: Annotated[float, Number("m", above=0, at_most=1e10)] = Field(examples=["780.0"])
     """Diameter of the partner, at its equator."""
     polar_diameter: Annotated[float, Number("m", above=0, at_most=1e10)] | None = None
-    """Diameter along its spin axis. Absent: that of the equator, a ball."""
+    """Diameter along its spin axis. Absent: that of the equator, a sphere."""
     spin_period: Annotated[float, Number("s", at_least=1, at_most=1e12)] | None = None
     """Spin period of the partner, about the axis of the orbit. Absent: it keeps one face to the body."""
     period: Annotated[float, Number("s", above=0, at_most=1e12)] | None = None
@@ -180,8 +180,8 @@ class SiteSection(Section):
     """Number of facets for the gravity. A mesh with more facets is simplified for this purpose, with the same volume
     and centroid; the ground keeps the whole mesh. Absent: all facets."""
     partner: Annotated[bool, Strict()] = True
-    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper. A mesh
-    has the one of `partner_body`; false: none is meant."""
+    """Whether the partner of a built-in body attracts and may be hit; false: the body is alone, as in the paper. For a
+    mesh `partner_body` gives it; false confirms that there is none."""
     partner_body: PartnerSection | None = None
     partner_longitude_deg: Angle | None = None
     """East longitude over which the partner is when the lander leaves. Absent: unknown, sampled over the circle; 0 of a

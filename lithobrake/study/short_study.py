@@ -34,12 +34,13 @@ _STUDY = """\
 title = "{lander.name} on {body.name}"
 seed = 1
 
-# Boxes of settled grains that repeat in both directions, one for every four journeys, at least twelve.
+# Boxes of settled grains that repeat in both directions: one for every four journeys, at
+# least twelve.
 [bed]
 pour_gravity = 0.5    # m/s2; grains then settle under the local gravity
 
-# The ground, which nobody knows: each bed draws a kind by its weight and a size of grains, from which its width and
-# number of grains follow. {ground_words}
+# Unknown ground: the kind of each bed is sampled by its weight, then a grain size, from
+# which width and number of grains follow. {ground_words}
 [ground]
 unknown = "everywhere"    # or "patchy", or "both"
 

@@ -27,7 +27,7 @@ from lithobrake.vocabulary.quantities import PLACE
 
 
 class Study(Section):
-    """A landing study."""
+    """A checked study: all tables of a study file."""
 
     title: str = ""
     """Title of the study, one line."""

@@ -46,7 +46,7 @@ class Images(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class LanderSearch:
-    """The windows of a search, and what they add up to.
+    """Images of a search in their order, with the cumulative probability of detection.
 
     latitude, longitude: places of rest [deg], [count]; first: number of the window that shows each place first, -1 for
     none, [count]; found: chance that the windows up to each show the lander, of landers at rest, by landers on beds

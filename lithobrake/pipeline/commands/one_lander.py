@@ -56,7 +56,7 @@ LAST_BED = 2**32 - 1
 
 @dataclass(frozen=True)
 class OneLanding:
-    """A landing with all that it followed from.
+    """A simulated landing with its inputs, bed and lander.
 
     values: every number that it read, by dotted key in the units of the study file, drawn ones included.
     """
@@ -95,7 +95,7 @@ class OneLanding:
 
 
 def landing_inputs(study: Study, changes: Iterable[str] = (), number: int = 0) -> Row:
-    """What the run of a number reads, counted from 0 as in the tables, but for changes such as "grain.friction=0.4".
+    """Inputs of a run by its number from 0, with changes such as "grain.friction=0.4" applied.
 
     By dotted key, in the units of the study file; at the medians where the study draws no lander. Raises ValueError for
     a change of what a landing does not read or the study file may not have, a study without soil, or a number that no
@@ -145,7 +145,7 @@ def _of_bed(design: DrawnDesign, values: Row, changed: Row) -> Row:
 
 
 def land_one(study: Study, values: Row, progress: Progress = silent) -> OneLanding:
-    """Land once with all that a landing reads, see landing_inputs.
+    """Simulate one landing with the inputs of `landing_inputs`.
 
     The bed is that of the study and the number that the values have, from the library or poured: another grain is
     another soil that is landed on, and not another bed.
@@ -278,7 +278,7 @@ def follow_one(
 
 
 def energy_gained(study: Study, landings: Iterable[OneLanding]) -> str | None:
-    """What it means that landings gave a lander more energy than it came with; None where they did not."""
+    """Sentence on landings that left with more energy than impact and gravity supplied; None if none did."""
     study, made = with_site_gravity(study), list(landings)
     records = [_record(study, one, {}) for one in made]
     return energy_warning(DrawnDesign(study), records, max(float(one.bed.surface_height) for one in made))

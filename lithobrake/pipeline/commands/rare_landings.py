@@ -50,7 +50,7 @@ def rare_failure(
     model: Model | None = None,
     shown: StudyProgress | None = None,
 ) -> dict[str, Any]:
-    """Tell the probability of a rare limit state by subset simulation, and write it to rare_NAME.json of the folder.
+    """Estimate the probability of a rare limit state by subset simulation, and write rare_NAME.json to the folder.
 
     landing_count: of a level, each a tenth as probable as the one before; all else: as for `run_study`, which pours
     the beds first. Raises ValueError for a limit state that has no distance, and for what `run_study` refuses.

@@ -69,7 +69,7 @@ def find_requirement(
     model: Model | None = None,
     shown: StudyProgress | None = None,
 ) -> Requirement:
-    """Say which deliveries of a study meet a limit state of its journeys with at least this probability.
+    """Find the deliveries of a study that meet a limit state of its journeys with at least this probability.
 
     grid: ascending values of one to three delivery options by dotted key, as `aim.grid` has them; all combinations are
     deliveries. confidence: level of the intervals. lander_count: landers that the emulator follows for each delivery, a

@@ -47,7 +47,7 @@ _LOOK = 0.2
 
 
 def served_models(study: Path, out: Path) -> list[ServedModel]:
-    """The models of a study that its folder has files for.
+    """Models of a study that can be served from the files in its folder, by name.
 
     Raises ValueError for a study that is refused.
     """

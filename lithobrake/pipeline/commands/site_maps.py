@@ -39,7 +39,7 @@ def map_sites(
     model: Model | None = None,
     shown: StudyProgress | None = None,
 ) -> SiteMap:
-    """Say what becomes of landers that a study delivers to each of so many sites over its body.
+    """Follow the landers of a study, by its emulator, from each of a number of sites over its body.
 
     cell_count: sites, cells of equal area; lander_count: landers of each, a multiple of the refits of the emulator, at
     least two of each; all else: as for `run_study`, which makes the journeys and their emulator first. Raises

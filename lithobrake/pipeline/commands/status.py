@@ -119,7 +119,7 @@ class StudyStatus:
 
 
 def study_status(path: Path) -> StudyStatus:
-    """Say who is at work on a study, which stages are done, and the state of its runs.
+    """Status of a study: running process, stages that are current, and counts of its runs.
 
     A folder with only a ledger is that of a campaign. Raises ValueError when it has neither study nor ledger.
     """

@@ -25,7 +25,7 @@ NAMES = {
 
 @dataclass(frozen=True)
 class Plan:
-    """What a study will do.
+    """Planned runs of a study, with their time, disk space, expected half-width and warnings.
 
     study           its title
     folder          where

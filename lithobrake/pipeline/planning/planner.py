@@ -43,7 +43,7 @@ SHOW_LANDINGS = frozenset({"landing", "telling_landing"})
 
 
 def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers: bool = False) -> Plan:
-    """Say what `run_study` would do with the same arguments; nothing is written.
+    """Plan what `run_study` would do with the same arguments; writes nothing.
 
     infers: also what bounces on the soil of the study would say, by its emulator, within seconds.
     Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger

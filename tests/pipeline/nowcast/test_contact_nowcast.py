@@ -278,7 +278,7 @@ def test_landers_are_counted_and_what_is_left_out_is_said() -> None:
     said = statement(FOUND)
     assert said[0].startswith("The first contacts of 1366 of 2000 drawn landers are like this one; they stand on 96")
     assert said[1].startswith("Left out are 3.1 % of the drawn landers, ")
-    assert said[-1] == "These are more than 10 %, so time and place of rest are not told."
+    assert said[-1] == "These are more than 10 %, so no time and place of rest are given."
 
 
 def test_a_refusal_stands_alone() -> None:

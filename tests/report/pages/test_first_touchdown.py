@@ -159,11 +159,17 @@ def test_a_prediction_interval_for_a_new_bed_has_the_size_of_the_bed(first: Page
     assert "new bed" not in page_answer(first)
 
 
-def test_the_caption_of_what_decides_has_every_part_with_its_interval(first: PageData) -> None:
-    words = touchdowns.variance(changed(first, variance_shares={"speed_out": record(), "spin_out": record()}).results)
+def test_the_sentence_on_the_variance_has_every_part_with_its_interval() -> None:
+    words = touchdowns.output_variance("speed_out", record())
     for shown in ("at least 6 % (1-11 %; most", "3 % (0-15 %)", "everything else 91 % (80-97 %)", "0.4 % (0.3-1.0 %)"):
         assert shown in words
     assert "friction of the grains" in words
+
+
+def test_the_caption_of_the_variance_repeats_no_number_of_its_figure(first: PageData) -> None:
+    words = touchdowns.variance(changed(first, variance_shares={"speed_out": record(), "spin_out": record()}).results)
+    assert len(re.findall(r"\d %", words)) == 2
+    assert "twice as wide (the rebound speed): at least 20 % (4-33 %)" in words
 
 
 def rare(**changes: Any) -> dict[str, Any]:
