@@ -54,7 +54,11 @@ U = np.array([1e-6, 0.01, 0.3, 0.5, 0.77, 0.999, 1.0 - 1e-9])
 
 @pytest.mark.parametrize(("entry", "oracle"), PAIRS, ids=lambda one: getattr(one, "kind", ""))
 def test_quantiles_match_scipy_and_have_their_probability(entry, oracle):
-    assert np.allclose(entry.ppf(U), oracle.ppf(U), rtol=1e-9, atol=1e-12)
+    # SciPy loses digits of a truncated normal from the one end or, by its release, from the other.
+    from_below, from_above = oracle.ppf(U), oracle.isf(1.0 - U)
+    found = entry.ppf(U)
+    near = [np.isclose(found, expected, rtol=1e-9, atol=1e-12) for expected in (from_below, from_above)]
+    assert (near[0] | near[1]).all()
     assert entry.median == pytest.approx(oracle.median(), rel=1e-9)
     u = np.array([0.001, 0.2, 0.5, 0.9, 0.999])
     assert np.allclose(entry.cdf(entry.ppf(u)), u, rtol=1e-9)
