@@ -1,6 +1,6 @@
 """Where does rebound appear? A 2 cm ball on one cohesive soil, at equal speeds under four gravities.
 
-    python validation/low_speed/same_soil_gravities.py --work FOLDER --out FOLDER [--drops 2] [--shares 0.01 1e-5]
+    python validation/low_speed/same_soil_gravities.py --work FOLDER --out FOLDER [--drops 4] [--shares 0.01 1e-5]
 
 The soil is the 6 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. Rows
 that stand in same_soil_gravities.csv are not run again. Source: [Brisset-2018].
@@ -30,7 +30,7 @@ def froude(share: float, speed: float) -> float:
 
 
 def main() -> None:
-    given = options_of(__doc__, HERE, drops=2, shares=SHARES)
+    given = options_of(__doc__, HERE, drops=4, shares=SHARES)
     table = given.out / NAME
     ran = {(row["share"], row["speed"], row["drop"]) for row in read_rows(table)}
     for number, share, speed in itertools.product(range(given.drops), given.shares, SPEEDS):
