@@ -47,10 +47,12 @@ class Trial(NamedTuple):
     slope_deg: float
     sintering: str
     seed: int
+    filled: float = 0.58
 
     @property
     def name(self) -> str:
-        return f"{self.pad}, {self.slope_deg:g} deg, {self.sintering}, {self.seed}"
+        loose = ", loose" if self.filled == LOOSE else ""
+        return f"{self.pad}, {self.slope_deg:g} deg, {self.sintering}, {self.seed}{loose}"
 
 
 def ring(radius: float, height: float) -> Floats:
@@ -70,18 +72,22 @@ def pad_of(name: str) -> ConvexHull:
     return ConvexHull(np.concatenate([np.zeros((1, 3)), *rings]))
 
 
+# Grains that fill less of the space lie apart at first.
+LOOSE = 0.5
 PADS = ("hemisphere", "cone", "disk")
 TRIALS = (
     *(Trial(pad, 0.0, sintering, 1) for sintering in PULLS for pad in PADS),
-    *(Trial(pad, slope, sintering, seed) for seed, slope, sintering, pad in
-      itertools.product((1, 2), (15.0, 20.0), ("some", "much"), PADS)),
+    *(Trial(pad, slope, sintering, 1) for slope, sintering, pad in
+      itertools.product((15.0, 20.0), ("some", "much"), PADS)),
+    *(Trial(pad, slope, sintering, 1, LOOSE) for slope, sintering, pad in
+      ((0.0, "none", "hemisphere"), (0.0, "none", "disk"), *itertools.product((0.0, 15.0, 20.0), ("some",), PADS))),
 )  # fmt: skip
 NAMES = {trial.name: trial for trial in TRIALS}
 
 
 def soil(trial: Trial) -> Soil:
     return Soil(
-        filled=0.58, grain=GRAIN, width=WIDTH, depth=DEPTH, friction=0.6, rolling_friction=0.1,
+        filled=trial.filled, grain=GRAIN, width=WIDTH, depth=DEPTH, friction=0.6, rolling_friction=0.1,
         cohesion=PULLS[trial.sintering], density=920.0, young_modulus=1e6, speed=SPEED, seed=trial.seed,
     )  # fmt: skip
 

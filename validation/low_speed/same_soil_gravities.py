@@ -2,8 +2,9 @@
 
     python validation/low_speed/same_soil_gravities.py --work FOLDER --out FOLDER [--drops 4] [--shares 0.01 1e-5]
 
-The soil is the 6 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. Rows
-that stand in same_soil_gravities.csv are not run again. Source: [Brisset-2018].
+The soil is the 6 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. 4 mm
+grains meet the slowest ball at the lowest gravity. Rows that stand in same_soil_gravities.csv are not run again.
+Source: [Brisset-2018].
 """
 
 import itertools
@@ -22,6 +23,7 @@ NAME = "same_soil_gravities.csv"
 SHARES = (1e-2, 1e-5, 1e-4, 1e-3)  # of Earth's gravity
 SPEEDS = (0.05, 0.2, 1.0)  # m/s
 SOIL = PULLING
+FINER, QUIET = "4 mm, ", (1e-5, 0.05)  # grains as cohesive and finer, at a share and a speed [m/s] of the above
 
 
 def froude(share: float, speed: float) -> float:
@@ -32,13 +34,15 @@ def froude(share: float, speed: float) -> float:
 def main() -> None:
     given = options_of(__doc__, HERE, drops=4, shares=SHARES)
     table = given.out / NAME
-    ran = {(row["share"], row["speed"], row["drop"]) for row in read_rows(table)}
-    for number, share, speed in itertools.product(range(given.drops), given.shares, SPEEDS):
-        if (share, speed, number) in ran:
+    ran = {(row["kind"], row["speed"], row["drop"]) for row in read_rows(table)}
+    cells = [("", SOIL, *cell) for cell in itertools.product(range(given.drops), given.shares, SPEEDS)]
+    cells += [(FINER, who_rebounds.KINDS["lunar, 4 mm, 1e-4 g"], number, *QUIET) for number in range(given.drops)]
+    for prefix, soil, number, share, speed in cells:
+        name = f"{prefix}{share:g} g"
+        if (name, speed, number) in ran:
             continue
-        name = f"{share:g} g"
-        # Kinds of equal pour share one: the loose grains of "6 mm".
-        who_rebounds.KINDS[name] = replace(SOIL, share=share)
+        # Kinds of equal pour share one: the loose grains of "6 mm" and "4 mm".
+        who_rebounds.KINDS[name] = replace(soil, share=share)
         row = who_rebounds.drop(given.work, name, froude(share, speed), number)
         note(table, {"share": share, "speed": speed, **row})
 
