@@ -51,7 +51,9 @@ def those(rows: list[Row], **values: object) -> list[Row]:
 
 
 def mean_and_error(values: np.ndarray) -> Found:
-    """Return the mean and its standard error."""
+    """Return the mean and its standard error, which a single value has not."""
+    if len(values) == 1:
+        return Found(float(values[0]))
     return Found(float(values.mean()), float(values.std(ddof=1) / math.sqrt(len(values))))
 
 
@@ -170,7 +172,7 @@ def lands(row: Row) -> bool:
 
 
 def footpad() -> dict[str, Found]:
-    rows = [row for row in rows_of("footpad_on_ice") if row["filled"] > LOOSE]
+    rows = [row for row in rows_of("footpad_on_ice") if row["filled"] != LOOSE]
     level, slopes = those(rows, slope_deg=0.0), [row for row in rows if row["slope_deg"] > 0.0]
     up = {name: column(those(level, sintering=name), "rebound_speed") for name in ("some", "much")}
     slip = {pad: float(column(those(slopes, pad=pad), "slip").mean()) for pad in ("hemisphere", "cone", "disk")}

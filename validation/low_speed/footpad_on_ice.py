@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lithobrake.dem import ConvexHull, World
+from lithobrake.dem import ConvexHull, Material, World
 
 sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
 from plate_into_loose_grains import Soil, kept
@@ -35,9 +35,11 @@ SETTLED, DRAG = 0.5, 3.0  # s, 1/s, before the pad comes
 LOOK, LONGEST = 0.02, 3.0  # s
 FLOWN = 0.02  # m above where it began
 CALM_SPEED, CALM_LOOKS = 0.01, 5  # m/s, looks
-STEPS = 60.0  # in the shortest contact
+STEPS = {RESTITUTION: 60.0, DAMPED: 80.0}  # in the shortest contact
 HELD_SLIP, HELD_SPEED = 0.5 * PAD, 0.02  # m, m/s: more of either, and the slope does not hold the pad
 BORNE = 0.5 * PAD  # m deep at most, and the ground bears the pad
+# Grains that fill less of the space lie apart at first; of another restitution they lose more.
+LOOSE, RESTITUTION, DAMPED = 0.5, 0.5, 0.2
 
 
 class Trial(NamedTuple):
@@ -48,11 +50,13 @@ class Trial(NamedTuple):
     sintering: str
     seed: int
     filled: float = 0.58
+    restitution: float = RESTITUTION
 
     @property
     def name(self) -> str:
         loose = ", loose" if self.filled == LOOSE else ""
-        return f"{self.pad}, {self.slope_deg:g} deg, {self.sintering}, {self.seed}{loose}"
+        damped = ", damped" if self.restitution == DAMPED else ""
+        return f"{self.pad}, {self.slope_deg:g} deg, {self.sintering}, {self.seed}{loose}{damped}"
 
 
 def ring(radius: float, height: float) -> Floats:
@@ -72,8 +76,6 @@ def pad_of(name: str) -> ConvexHull:
     return ConvexHull(np.concatenate([np.zeros((1, 3)), *rings]))
 
 
-# Grains that fill less of the space lie apart at first.
-LOOSE = 0.5
 PADS = ("hemisphere", "cone", "disk")
 TRIALS = (
     *(Trial(pad, 0.0, sintering, 1) for sintering in PULLS for pad in PADS),
@@ -81,6 +83,7 @@ TRIALS = (
       itertools.product((15.0, 20.0), ("some", "much"), PADS)),
     *(Trial(pad, slope, sintering, 1, LOOSE) for slope, sintering, pad in
       ((0.0, "none", "hemisphere"), (0.0, "none", "disk"), *itertools.product((0.0, 15.0, 20.0), ("some",), PADS))),
+    *(Trial(pad, slope, "some", 1, LOOSE, DAMPED) for slope, pad in itertools.product((15.0, 20.0), PADS)),
 )  # fmt: skip
 NAMES = {trial.name: trial for trial in TRIALS}
 
@@ -92,16 +95,20 @@ def soil(trial: Trial) -> Soil:
     )  # fmt: skip
 
 
+def ice(trial: Trial) -> Material:
+    return replace(soil(trial).material, restitution=trial.restitution)
+
+
 def settled(trial: Trial, work: Path) -> World:
     """Return a bed on a slope: x runs down it, z is its normal."""
     ground = soil(trial)
     place, radius = kept(ground, work)
     slope = math.radians(trial.slope_deg)
     world = World((GRAVITY * math.sin(slope), 0.0, -GRAVITY * math.cos(slope)), None, period=(WIDTH, WIDTH))
-    add_beads(world, radius, ground.material, place)
-    world.add_plane((0, 0, -DEPTH), (0, 0, 1), ground.material)
+    add_beads(world, radius, ice(trial), place)
+    world.add_plane((0, 0, -DEPTH), (0, 0, 1), ice(trial))
     world.drag = DRAG
-    world.time_step = world.shortest_contact(SPEED) / STEPS
+    world.time_step = world.shortest_contact(SPEED) / STEPS[trial.restitution]
     world.run(duration=SETTLED)
     world.drag = 0.0
     return world
@@ -121,7 +128,7 @@ def landed(trial: Trial, work: Path) -> tuple[Row, Floats]:
     """
     start, slope = time.process_time(), math.radians(trial.slope_deg)
     world = settled(trial, work)
-    stuff, shape = replace(soil(trial).material, cohesion_force=0.0), pad_of(trial.pad)
+    stuff, shape = replace(ice(trial), cohesion_force=0.0), pad_of(trial.pad)
     begin = (0.0, 0.0, top_under(world) + 0.5 * PAD)
     body = world.add_body(
         shape, stuff, begin, (SPEED * math.sin(slope), 0.0, -SPEED * math.cos(slope)), mass=MASS,

@@ -3,7 +3,7 @@
     python validation/low_speed/plate_sinkage.py --work FOLDER --out FOLDER [--names NAME ...]
 
 Plate, speed, depth and materials are those of [Negrut-2026], whose grains are clumps of three spheres of 22 mm in
-a round bin; ours are spheres of 50 mm with rolling resistance, softer, on ground that repeats. Rows that stand in
+a round bin; ours are spheres of 60 mm with rolling resistance, softer, on ground that repeats. Rows that stand in
 plate_sinkage.csv are not run again.
 """
 
@@ -26,7 +26,8 @@ HERE = Path(__file__).parent
 NAME = "plate_sinkage.csv"
 PLATE, SPEED, DEEP, DATUM = 0.35, 0.05, 0.06, 1000.0  # m, m/s, m, Pa: the source
 WIDTH, BED, GRAVITY = 1.05, 0.28, 9.81  # m, m, m/s2: the source
-GRAIN = 0.05  # m
+GRAIN = 0.06  # m
+MIDDLE = (1.0, 1.5)  # grains above the floor and below the surface, between which the packing is measured
 ACCELERATION = 200.0  # m/s2, the source's cohesion: a pull of so much times the reduced mass of two grains
 DRY = Material(
     young_modulus=1e7, poisson_ratio=0.3, restitution=0.4, friction=0.5, density=2600.0, rolling_friction=0.1
@@ -38,7 +39,6 @@ SHOWN = (0.005, 0.02, 0.04, 0.06)  # m
 # Name: whether grains pull on each other while they are poured, and while the plate is pressed; seed.
 NAMES = {
     "dry": (False, False, 1), "cohesive": (False, True, 1), "poured cohesive": (True, True, 1),
-    "dry, again": (False, False, 2), "cohesive, again": (False, True, 2), "poured cohesive, again": (True, True, 2),
 }  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def run(name: str, work: Path) -> Row:
     poured, pressed, seed = NAMES[name]
     start = time.process_time()
     world = prepared(work, poured, pressed, seed)
-    density = bulk_density(world, beads(poured, seed))
+    density = bulk_density(world, beads(poured, seed), *MIDDLE)
     curve = pressed_in(world)
     np.savetxt(work / f"plate_{name.replace(' ', '_').replace(',', '')}.txt", curve)
     return {
