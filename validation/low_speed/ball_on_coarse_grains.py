@@ -1,6 +1,6 @@
 """Does a ball bounce or roll on irregular grains of millimetres and centimetres, below 2 m/s, in microgravity?
 
-    python validation/low_speed/ball_on_coarse_grains.py --work FOLDER --out FOLDER [--drops 3] [--names NAME ...]
+    python validation/low_speed/ball_on_coarse_grains.py --work FOLDER --out FOLDER [--drops 2] [--names NAME ...]
 
 Grains and drops are made as in ../experiments/who_rebounds.py: a quartz ball of 2 cm on convex hulls. Rows that stand
 in ball_on_coarse_grains.csv are not run again. Source: [Brisset-2020]; sizes of grains and ball, their contacts,
@@ -57,7 +57,7 @@ def dropped(work: Path, name: str, speed: float, number: int) -> Row:
 
 
 def main() -> None:
-    given = options_of(__doc__, HERE, drops=3, names=tuple(NAMES))
+    given = options_of(__doc__, HERE, drops=2, names=tuple(NAMES))
     ran = {(row["name"], row["speed"], row["drop"]) for row in read_rows(given.out / NAME)}
     for name, number, speed in itertools.product(given.names, range(given.drops), SPEEDS):
         if (name, speed, number) not in ran:

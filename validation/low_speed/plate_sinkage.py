@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.dem import Material, World
+from lithobrake.touchdown import settling
 
 sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
 from repose import angle_of_repose
@@ -32,7 +33,6 @@ ACCELERATION = 200.0  # m/s2, the source's cohesion: a pull of so much times the
 DRY = Material(
     young_modulus=1e7, poisson_ratio=0.3, restitution=0.4, friction=0.5, density=2600.0, rolling_friction=0.1
 )
-PRESS_STEPS = 40.0  # in the shortest contact: damping in many contacts at once asks for more
 TICK = 1e-3  # s, between two moves of the plate
 AREA = 0.25 * math.pi * PLATE**2
 SHOWN = (0.005, 0.02, 0.04, 0.06)  # m
@@ -62,9 +62,8 @@ def prepared(work: Path, poured: bool, pressed: bool, seed: int) -> World:
         return bed
     world = empty_world(beads(pressed, seed))
     add_beads(world, np.array([body.shape.bounding_radius for body in bed.bodies]), stuff(pressed), places_of(bed))
-    world.time_step = world.shortest_contact(0.3) / PRESS_STEPS
     world.drag = math.sqrt(GRAVITY / GRAIN)
-    world.run(duration=0.3)
+    settling.run_quietly(world, 0.3)
     world.drag = 0.0
     return world
 
@@ -75,7 +74,6 @@ def pressed_in(world: World) -> Floats:
     The plate is a plane that meets the grains under its disc.
     """
     height = float(column_tops(world, 0.5 * PLATE, 0.1 * GRAIN).max()) + 1e-4
-    world.time_step = world.shortest_contact(0.3) / PRESS_STEPS
     plate = world.add_plane((0, 0, height), (0, 0, -1), DRY, bodies=[])
     looks: list[tuple[float, float]] = []
     datum = math.nan
@@ -84,7 +82,7 @@ def pressed_in(world: World) -> Floats:
         place = places_of(world)
         under = np.flatnonzero((np.hypot(place[:, 0], place[:, 1]) < 0.5 * PLATE) & (place[:, 2] < height))
         world.move_plane(plate, (0, 0, height), bodies=[int(k) for k in under])
-        world.run(duration=TICK)
+        settling.run_quietly(world, TICK)
         contacts = world.contacts()
         pressure = float(contacts["normal_force"][contacts["body_b"] == -1 - plate].sum()) / AREA
         if math.isnan(datum) and pressure >= DATUM:

@@ -23,7 +23,8 @@ NAME = "same_soil_gravities.csv"
 SHARES = (1e-2, 1e-5, 1e-4, 1e-3)  # of Earth's gravity
 SPEEDS = (0.05, 0.2, 1.0)  # m/s
 SOIL = PULLING
-FINER, QUIET = "4 mm, ", (1e-5, 0.05)  # grains as cohesive and finer, at a share and a speed [m/s] of the above
+# Finer grains, as cohesive: at a share and a speed [m/s], so many drops.
+FINER, QUIET, FINER_DROPS = "4 mm, ", (1e-5, 0.05), 2
 
 
 def froude(share: float, speed: float) -> float:
@@ -36,7 +37,7 @@ def main() -> None:
     table = given.out / NAME
     ran = {(row["kind"], row["speed"], row["drop"]) for row in read_rows(table)}
     cells = [("", SOIL, *cell) for cell in itertools.product(range(given.drops), given.shares, SPEEDS)]
-    cells += [(FINER, who_rebounds.KINDS["lunar, 4 mm, 1e-4 g"], number, *QUIET) for number in range(given.drops)]
+    cells += [(FINER, who_rebounds.KINDS["lunar, 4 mm, 1e-4 g"], number, *QUIET) for number in range(FINER_DROPS)]
     for prefix, soil, number, share, speed in cells:
         name = f"{prefix}{share:g} g"
         if (name, speed, number) in ran:

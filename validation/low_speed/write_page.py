@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from answers import CASES, Answer, answers_of, bears, ejects, lands, rebounds, rolls, rows_of, those
 from fits import column
-from footpad_on_ice import HELD_SLIP
+from footpad_on_ice import HELD_SLIP, HELD_SPEED, LOOSE, RESTITUTION
 from matplotlib.axes import Axes
 from philae_into_ice import DENT
 from plate_sinkage import SHOWN
@@ -128,6 +128,34 @@ def plate_table() -> str:
     ))  # fmt: skip
 
 
+def words() -> dict[str, str]:
+    """Return the numbers of the sentences, by name."""
+    rows = rows_of("same_soil_gravities")
+    soil = [row for row in rows if not row["kind"].startswith(FINER)]
+    finer = [row for row in rows if row["kind"].startswith(FINER)]
+    shares = sorted({row["share"] for row in soil}, reverse=True)
+    slow, fast = min(row["speed"] for row in soil), max(row["speed"] for row in soil)
+    balls = rows_of("ball_on_coarse_grains")
+    pads = rows_of("footpad_on_ice")
+    pulled = [row for row in pads if row["sintering"] != "none" and row["restitution"] == RESTITUTION]
+    return {
+        "slow_rebounds": ", ".join(
+            f"{of_counts(those(soil, share=one, speed=slow), rebounds)} at {one:g}" for one in shares
+        ),
+        "fast_rebounds": of_counts(those(soil, share=shares[0], speed=fast), rebounds),
+        "finer_eject": of_counts(finer, ejects), "finer_rebound": of_counts(finer, rebounds),
+        "coarse_drops": str(len(those(balls, name="cm", speed=balls[0]["speed"]))),
+        "coarse_count": str(len(balls)),
+        "cm_rebound": of_counts(those(balls, name="cm"), rebounds),
+        "mm_rebound": of_counts(those(balls, name="mm"), rebounds),
+        "pads_flown": of_counts(pulled, lambda row: row["last_speed"] > HELD_SPEED),
+        "pads_count": str(len(pads)),
+        "damped_land": of_counts([row for row in pads if row["restitution"] != RESTITUTION], lands),
+        "loose_sunk": of_counts([row for row in pads if row["sintering"] == "none" and row["filled"] == LOOSE],
+                                lambda row: not bears(row)),
+    }  # fmt: skip
+
+
 def of_settings(axis: Axes, name: str, value: str, names: list[str]) -> None:
     """Each run as a dot, and the mean of each setting as a bar."""
     rows = rows_of(name)
@@ -221,7 +249,7 @@ def main() -> None:
         **{f"from_{case}": made(one, f"{one['cpu_s_of_rows']:.0f} s of CPU time") for case, one in kept.items()},
         gravity_cells=ball_table("same_soil_gravities", "kind", "speed"),
         coarse_cells=ball_table("ball_on_coarse_grains", "name", "speed"),
-        pads=footpad_table(), plates=plate_table(),
+        pads=footpad_table(), plates=plate_table(), **words(),
         ratios=table(heads, settings_of("lander_on_beds", "ratio")),
         losses=table(heads, settings_of("filled_shell", "energy_lost")), ice=ice_table(),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""What changes the speed at which a ball leaves the last grains above a floor: dashpot, order of pairs, wall or step?
+"""What changes the speed at which a ball leaves the last grains above a floor: dashpot, order of pairs or wall?
 
     python validation/nine_codes/turn_tests.py --work FOLDER --out FOLDER [--only NAME ...]
 
@@ -38,7 +38,6 @@ class Setting:
     dashpot: str = "none"
     backwards: bool = False  # grains numbered from the last to the first
     floor: Material = STEEL_OF_GRAINS
-    step: float = STEP
 
 
 SETTINGS = {
@@ -46,13 +45,12 @@ SETTINGS = {
     "tangential dashpot": Setting(dashpot="mindlin"),
     "pairs in another order": Setting(backwards=True),
     "floor and walls without friction": Setting(floor=SMOOTH),
-    "half the step": Setting(step=0.5 * STEP),
 }
 
 
 def box_of(places: Floats, setting: Setting) -> World:
     """Return grains at places [m] in the box."""
-    world = World((0.0, 0.0, -GRAVITY), setting.step, pair_rule="mean", tangential_dashpot=setting.dashpot)
+    world = World((0.0, 0.0, -GRAVITY), STEP, pair_rule="mean", tangential_dashpot=setting.dashpot)
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(places), 1))
     grains = world.add_bodies([Sphere(GRAIN_RADIUS)] * len(places), M1, places, upright)
     walled(world, setting.floor, grains)
@@ -93,7 +91,7 @@ def rebound(places: Floats, setting: Setting, nudge: float) -> tuple[float, floa
     walled(world, STEEL_OF_BALL, range(ball, ball + 1))
     lowest, fastest = height, -math.inf
     while world.time < FOLLOWED:
-        advance(world, world.time + LOOK, setting.step)
+        advance(world, world.time + LOOK, STEP)
         lowest = min(lowest, float(world.position[ball, 2]))
         fastest = max(fastest, float(world.velocity[ball, 2]))
         if world.position[ball, 2] > height:

@@ -47,6 +47,8 @@ from page import table, write_page
 from quantities import CODE, NOT_SHOWN, Quantity, keep_quantities
 
 PAIR_BAR = 1e-3  # relative, set before the runs
+# Spheres and steps: 5 s at the step of the drum.
+DRUM, SILO = (38_000, 6.25e6), (100_000, 6.25e6)
 WORDS = {"restitution": "restitution", "v_x": "speed [m/s]", "omega_y": "spin [rad/s]", "x": "path [m]"}
 
 
@@ -188,12 +190,32 @@ def runs_table(found: dict[str, Curve]) -> str:
     return table(heads, lines)
 
 
+def stand_in() -> str:
+    """Return how fast the ball leaves a shallow layer, by what is changed."""
+    rows, lines = read_rows(HERE / "turn_tests.csv", {"setting": str}), []
+    for name in dict.fromkeys(row["setting"] for row in rows):
+        speeds = [row["rebound_speed"] for row in rows if row["setting"] == name]
+        lows = [row["lowest"] for row in rows if row["setting"] == name]
+        ends = f"{min(speeds):.3f} to {max(speeds):.3f}"
+        lines.append((name, str(len(speeds)), f"{statistics.mean(speeds):.3f}", ends, mm(statistics.mean(lows))))
+    heads = ("changed", "runs", "rebound speed, mean [m/s]", "range [m/s]", "lowest point above the floor [mm]")
+    return table(heads, lines)
+
+
+def days(spheres: float, steps: float) -> str:
+    """Return the CPU time of so many steps at the cost of a sphere's step that was measured beside LAMMPS."""
+    rows = read_rows(HERE / "lammps_times.csv", {})
+    each = statistics.median(row["lithobrake"] for row in rows) / rows[0]["spheres"]
+    return f"{spheres * steps * each / 86400.0:.1f} days"
+
+
 def main() -> None:
     found = curves()
     draw(found)
     write_page(
         "nine_codes", filled=False, answer=answer(found), heights=comparison(found), between=between_codes(found),
         turn=after_the_turn(found), runs=runs_table(found), pairs=pair_table(), times=time_words(),
+        stand_in=stand_in(), drum_days=days(*DRUM), silo_days=days(*SILO),
     )  # fmt: skip
     keep_quantities("nine_codes", {
         "impact of a ball on 25 000 spheres": impact_quantities(found), "two pair tests": pair_quantities(),
