@@ -10,7 +10,6 @@ from fits import Line, Lines, column, line, mean_of
 from page import table, two_digits
 from quantities import NOT_SHOWN
 from result_rows import FIGURES, HERE, Row, read_rows
-from who_rebounds import VISCOELASTIC
 
 from lithobrake.analysis import wilson_interval
 
@@ -85,10 +84,9 @@ def rebounds_part() -> tuple[Lines, str]:
     thrown = [row for row in every if row["kind"] == FINEST and row["froude"] == 30.0 and row["ejecta"] > 0]
     lines.append(line("mean ejecta speed / impact speed, Froude number 30 (COLLIDE-2)", 0.0,
                       mean_of(list(column(thrown, "ejecta_speed"))), 0.10, "below 0.10"))  # fmt: skip
-    pebbles = [row for row in every if row["kind"] == "pebbles"]
-    others = {kind: [row for row in every if row["kind"] == kind] for kind in (HARDER, VISCOELASTIC)}
+    pebbles, other = ([row for row in every if row["kind"] == kind] for kind in ("pebbles", HARDER))
     lines.append(share_line("rebounds from irregular grains: pebbles", "often", 1.0, pebbles,
-                            shown_by(1.0, others)))  # fmt: skip
+                            shown_by(1.0, {HARDER: other})))  # fmt: skip
     of_rebounds(every, FIGURES / "who_rebounds.png")
     return lines, cells(every)
 

@@ -41,7 +41,6 @@ from result_rows import HERE, Row, read_rows
 from settling_in_other_gravities import DIAMETER, EARTH, GRAINS, SHARES, SOFT
 from stopping_force import FALLS
 from stopping_part import measured_prefactor, stopping_numbers
-from who_rebounds import VISCOELASTIC
 
 Numbers = dict[str, Any]
 
@@ -191,7 +190,7 @@ def rebound() -> Numbers:
     return {
         "counts": ", ".join(f"{rebounds(rows)} of {len(rows)} on {kind}" for kind, rows in fast.items()),
         "lunar": [share(PULLING), share("lunar, 4 mm, 1e-3 g")],
-        "pebbles": [share("pebbles"), share("pebbles, restitution 0.83"), share(VISCOELASTIC)],
+        "pebbles": [share("pebbles"), share("pebbles, restitution 0.83")],
         "slow": [
             np.mean([row["upward_out"] for row in of_kind(every, kind) if row["froude"] <= 10.0])
             for kind in (FINEST, "6 mm", JSC)

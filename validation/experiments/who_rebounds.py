@@ -70,11 +70,7 @@ class Kind:
             self.stiff * stuff.density * max(speed**2, gravity * DIAMETER), PULLED * self.surface_energy / self.grain
         )
         scale = stuff.young_modulus / needed
-        slower = math.sqrt(scale)
-        of_scale = {
-            "surface_energy": self.surface_energy * scale, "restitution_speed": stuff.restitution_speed * slower
-        }  # fmt: skip
-        return speed * slower, gravity * scale, replace(stuff, **of_scale)
+        return speed * math.sqrt(scale), gravity * scale, replace(stuff, surface_energy=self.surface_energy * scale)
 
 
 OF_THE_POUR = ("grain", "hulls", "width", "depth", "material")
@@ -85,8 +81,6 @@ COARSE = Kind(grain=0.006)
 PULLING = replace(COARSE, surface_energy=LUNAR, steps=40.0)
 PEBBLES = Kind(grain=0.01, hulls=True, width=0.09, depth=0.035, froude=(3.0, 30.0, 300.0))
 ROCK = 0.83  # restitution of rock on rock [Durda-2011]
-ROCK_SPEED = 1.0  # m/s, of the order at which it was measured
-VISCOELASTIC = "pebbles, restitution by speed, 1e-4 g"
 KINDS = {
     "4 mm": Kind(),
     "6 mm": COARSE,
@@ -99,9 +93,6 @@ KINDS = {
     "lunar, 4 mm, 1e-3 g": Kind(surface_energy=LUNAR, share=1e-3, steps=40.0, froude=(30.0,)),
     "pebbles": PEBBLES,
     "pebbles, restitution 0.83": replace(PEBBLES, material=replace(QUARTZ, restitution=ROCK)),
-    VISCOELASTIC: replace(
-        PEBBLES, material=replace(QUARTZ, restitution=ROCK, restitution_speed=ROCK_SPEED), share=1e-4
-    ),
 }
 
 
