@@ -25,6 +25,10 @@ def test_bearing_capacity_has_the_factors_of_the_tables(script: Any) -> None:
     assert bears(math.radians(30.0), 1.0, 0.0, 1.0) == pytest.approx(0.3 * 22.40, abs=0.005)
 
 
+def test_loose_ground_has_two_thirds_of_the_friction(script: Any) -> None:
+    assert math.tan(script("plate_sinkage")["loosened"](math.atan(0.6))) == pytest.approx(0.4)
+
+
 def test_exponent_of_a_power_law_is_its_power(script: Any) -> None:
     sinkage = np.arange(0.0, 0.062, 5e-5)
     curve = np.column_stack([sinkage, 3e5 * sinkage**0.9])

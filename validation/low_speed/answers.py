@@ -184,6 +184,18 @@ def footpad() -> dict[str, Found]:
     }  # fmt: skip
 
 
+def borne_by_closed_form(angle: Callable[[float], float] = float) -> float:
+    """Return the pressure [Pa] that the grains without cohesion bear at the last depth by the closed form.
+
+    angle: of friction [rad] from that of a heap.
+    """
+    rows = rows_of("plate_sinkage")
+    heap = math.radians(float(column([row for row in rows if row["name"].startswith("heap")], "slope_deg").mean()))
+    dry = [row for row in rows if row["name"].split(",")[0] == "dry"]
+    weight = float(column(dry, "solid_fraction").mean()) * DRY.density * GRAVITY
+    return bearing_capacity(angle(heap), weight, SHOWN[-1], PLATE)
+
+
 def plate() -> dict[str, Found]:
     rows = rows_of("plate_sinkage")
 
@@ -192,12 +204,9 @@ def plate() -> dict[str, Found]:
         return column([row for row in rows if row["name"].split(",")[0] == name], value)
 
     deepest = f"pressure_{1e3 * SHOWN[-1]:g}mm"
-    slope = math.radians(float(column([row for row in rows if row["name"].startswith("heap")], "slope_deg").mean()))
-    weight = float(of("dry", "solid_fraction").mean()) * DRY.density * GRAVITY
-    bears_there = bearing_capacity(slope, weight, SHOWN[-1], PLATE)
     dry, cohesive, poured = (of(name, deepest) for name in ("dry", "cohesive", "poured cohesive"))
     return {
-        "exponent": mean_and_error(of("dry", "exponent")), "closed_form": mean_and_error(dry / bears_there),
+        "exponent": mean_and_error(of("dry", "exponent")), "closed_form": mean_and_error(dry / borne_by_closed_form()),
         "cohesion": mean_and_error(cohesive / dry),
         "looser": mean_and_error(of("poured cohesive", "solid_fraction") - of("dry", "solid_fraction")),
         "weaker": mean_and_error(poured / cohesive),

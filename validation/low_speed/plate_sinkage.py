@@ -115,6 +115,11 @@ def bearing_capacity(slope: float, unit_weight: float, depth: float, diameter: f
     return unit_weight * (depth * of_depth + 0.3 * diameter * of_width)
 
 
+def loosened(slope: float) -> float:
+    """Return the angle of friction [rad] for which loose ground that yields locally bears as much; [Terzaghi-1943]."""
+    return math.atan(2.0 / 3.0 * math.tan(slope))
+
+
 def run(name: str, work: Path) -> Row:
     poured, pressed, seed = NAMES[name]
     start = time.process_time()

@@ -9,12 +9,24 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from answers import CASES, Answer, answers_of, bears, ejects, lands, rebounds, rolls, rows_of, those
+from answers import (
+    CASES,
+    Answer,
+    answers_of,
+    bears,
+    borne_by_closed_form,
+    ejects,
+    lands,
+    rebounds,
+    rolls,
+    rows_of,
+    those,
+)
 from fits import column
 from footpad_on_ice import HELD_SLIP, HELD_SPEED, LOOSE, RESTITUTION
 from matplotlib.axes import Axes
 from philae_into_ice import DENT
-from plate_sinkage import SHOWN
+from plate_sinkage import SHOWN, loosened
 from result_rows import HERE as EXPERIMENTS
 from result_rows import Row
 from same_soil_gravities import FINER
@@ -138,7 +150,9 @@ def words() -> dict[str, str]:
     balls = rows_of("ball_on_coarse_grains")
     pads = rows_of("footpad_on_ice")
     pulled = [row for row in pads if row["sintering"] != "none" and row["restitution"] == RESTITUTION]
+    dry = those(rows_of("plate_sinkage"), name="dry")[0][f"pressure_{1e3 * SHOWN[-1]:g}mm"]
     return {
+        "local_shear": f"{dry / borne_by_closed_form(loosened):.2f}",
         "slow_rebounds": ", ".join(
             f"{of_counts(those(soil, share=one, speed=slow), rebounds)} at {one:g}" for one in shares
         ),
