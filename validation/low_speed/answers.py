@@ -237,8 +237,7 @@ def causes() -> dict[tuple[str, str], str]:
     tried = {
         ("gravities", "micro_quiet"): ("finer grains, as cohesive", share(finer, ejects)),
         ("footpad", "unsintered"): ("ice that fills 0.5 of the space", share(loose, bears)),
-        ("footpad", "safe"): ("grains that lose more, looser", share(those(damped, slope_deg=15.0), lands)),
-        ("footpad", "steep"): ("grains that lose more, looser", share(those(damped, slope_deg=20.0), lands)),
+        ("footpad", "safe"): ("grains that lose more, looser", share(damped, lands)),
     }  # fmt: skip
     claims = {(claim.case, claim.key): claim for claim in CLAIMS}
     return found | {

@@ -83,7 +83,7 @@ TRIALS = (
       itertools.product((15.0, 20.0), ("some", "much"), PADS)),
     *(Trial(pad, slope, sintering, 1, LOOSE) for slope, sintering, pad in
       ((0.0, "none", "hemisphere"), (0.0, "none", "disk"), *itertools.product((0.0, 15.0, 20.0), ("some",), PADS))),
-    *(Trial(pad, slope, "some", 1, LOOSE, DAMPED) for slope, pad in itertools.product((15.0, 20.0), PADS[::2])),
+    *(Trial(pad, 15.0, "some", 1, LOOSE, DAMPED) for pad in PADS[::2]),
 )  # fmt: skip
 NAMES = {trial.name: trial for trial in TRIALS}
 

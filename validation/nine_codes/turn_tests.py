@@ -23,9 +23,9 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from harness import add_row, command_line, origin, read_rows, write_document
 
 HERE = Path(__file__).parent
-HALF, DEEP, FILLED = 0.018, 0.006, 0.58  # m, m: of the box, and the share that grains take of the layer
+HALF, DEEP, FILLED = 0.015, 0.006, 0.58  # m, m: of the box, and the share that grains take of the layer
 SPEED = 2.5  # m/s, of the ball above the layer
-SETTLING, FOLLOWED, LOOK = 0.03, 0.01, 1e-4  # s
+SETTLING, FOLLOWED, LOOK = 0.02, 0.008, 1e-4  # s
 NUDGES = (0.0, 1e-9)  # m
 STEP = 5e-7  # s
 SMOOTH = Material(restitution=0.3, friction=0.0, **STEEL)
