@@ -15,7 +15,6 @@ from footpad_on_ice import BORNE, HELD_SLIP, HELD_SPEED, LOOSE, RESTITUTION
 from plate_sinkage import DRY, GRAVITY, PLATE, SHOWN, bearing_capacity
 from rebounds_part import RISEN
 from result_rows import Row, read_rows
-from same_soil_gravities import FINER
 from who_rebounds import DIAMETER
 
 HERE = Path(__file__).parent
@@ -138,9 +137,8 @@ def gravities() -> dict[str, Found]:
     rows = rows_of("same_soil_gravities")
 
     def at(least: float, most: float, *speeds: float) -> list[Row]:
-        """Return the drops on the soil of all gravities under shares of Earth's from and to, at some speeds or all."""
-        return [row for row in rows if not row["kind"].startswith(FINER) and least <= row["share"] <= most
-                and (not speeds or row["speed"] in speeds)]  # fmt: skip
+        """Return the drops under shares of Earth's from and to, at some speeds or all."""
+        return [row for row in rows if least <= row["share"] <= most and (not speeds or row["speed"] in speeds)]
 
     def thrown(share_of_earth: float) -> float:
         return float(column(at(share_of_earth, share_of_earth, 1.0), "ejecta_speed").mean())
@@ -233,9 +231,7 @@ def causes() -> dict[tuple[str, str], str]:
     pads = rows_of("footpad_on_ice")
     loose = [row for row in pads if row["filled"] == LOOSE and row["sintering"] == "none"]
     damped = [row for row in pads if row["restitution"] != RESTITUTION]
-    finer = [row for row in rows_of("same_soil_gravities") if row["kind"].startswith(FINER)]
     tried = {
-        ("gravities", "micro_quiet"): ("finer grains, as cohesive", share(finer, ejects)),
         ("footpad", "unsintered"): ("ice that fills 0.5 of the space", share(loose, bears)),
         ("footpad", "safe"): ("grains that lose more, looser", share(damped, lands)),
     }  # fmt: skip

@@ -2,9 +2,8 @@
 
     python validation/low_speed/same_soil_gravities.py --work FOLDER --out FOLDER [--drops 4] [--shares 0.01 1e-5]
 
-The soil is the 6 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. 4 mm
-grains meet the slowest ball at the lowest gravity. Rows that stand in same_soil_gravities.csv are not run again.
-Source: [Brisset-2018].
+The soil is the 6 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. Rows
+that stand in same_soil_gravities.csv are not run again. Source: [Brisset-2018].
 """
 
 import itertools
@@ -23,8 +22,6 @@ NAME = "same_soil_gravities.csv"
 SHARES = (1e-2, 1e-5, 1e-4, 1e-3)  # of Earth's gravity
 SPEEDS = (0.05, 0.2, 1.0)  # m/s
 SOIL = PULLING
-# Finer grains, as cohesive: at a share and a speed [m/s], so many drops.
-FINER, QUIET, FINER_DROPS = "4 mm, ", (1e-5, 0.05), 2
 
 
 def froude(share: float, speed: float) -> float:
@@ -36,14 +33,12 @@ def main() -> None:
     given = options_of(__doc__, HERE, drops=4, shares=SHARES)
     table = given.out / NAME
     ran = {(row["kind"], row["speed"], row["drop"]) for row in read_rows(table)}
-    cells = [("", SOIL, *cell) for cell in itertools.product(range(given.drops), given.shares, SPEEDS)]
-    cells += [(FINER, who_rebounds.KINDS["lunar, 4 mm, 1e-4 g"], number, *QUIET) for number in range(FINER_DROPS)]
-    for prefix, soil, number, share, speed in cells:
-        name = f"{prefix}{share:g} g"
+    for number, share, speed in itertools.product(range(given.drops), given.shares, SPEEDS):
+        name = f"{share:g} g"
         if (name, speed, number) in ran:
             continue
-        # Kinds of equal pour share one: the loose grains of "6 mm" and "4 mm".
-        who_rebounds.KINDS[name] = replace(soil, share=share)
+        # Kinds of equal pour share one: the loose grains of "6 mm".
+        who_rebounds.KINDS[name] = replace(SOIL, share=share)
         row = who_rebounds.drop(given.work, name, froude(share, speed), number)
         note(table, {"share": share, "speed": speed, **row})
 

@@ -29,7 +29,6 @@ from philae_into_ice import DENT
 from plate_sinkage import SHOWN, loosened
 from result_rows import HERE as EXPERIMENTS
 from result_rows import Row
-from same_soil_gravities import FINER
 
 from lithobrake.report.figures.style import INPUT_COLOURS, QUIET
 
@@ -115,15 +114,13 @@ def ball_table(name: str, *keys: str) -> str:
 
 
 def footpad_table() -> str:
-    heads = ("slope [deg]", "sintering", "pad", "runs", "borne", "land", "depth [cm]", "way along the slope [cm]",
-             "rebound speed [m/s]")  # fmt: skip
-    rows, found = rows_of("footpad_on_ice"), []
-    for cell in dict.fromkeys((row["slope_deg"], row["sintering"], row["pad"]) for row in rows):
-        own = those(rows, **dict(zip(("slope_deg", "sintering", "pad"), cell, strict=True)))
-        deep, way, up = (column(own, name).mean() for name in ("deepest", "slip", "rebound_speed"))
-        found.append((f"{cell[0]:g}", *cell[1:], str(len(own)), of_counts(own, bears), of_counts(own, lands),
-                      f"{1e2 * deep:.1f}", f"{1e2 * way:.1f}", f"{up:.2f}"))  # fmt: skip
-    return table(heads, found)
+    heads = ("slope [deg]", "sintering", "filled", "restitution", "pad", "borne", "lands", "depth [cm]",
+             "way along the slope [cm]", "rebound speed [m/s]", "speed at the end [m/s]")  # fmt: skip
+    return table(heads, (
+        (f"{row['slope_deg']:g}", row["sintering"], f"{row['filled']:g}", f"{row['restitution']:g}", row["pad"],
+         yes(bears(row)), yes(lands(row)), f"{1e2 * row['deepest']:.1f}", f"{1e2 * row['slip']:.1f}",
+         f"{row['rebound_speed']:.2f}", f"{row['last_speed']:.2f}") for row in rows_of("footpad_on_ice")
+    ))  # fmt: skip
 
 
 def plate_table() -> str:
@@ -142,9 +139,7 @@ def plate_table() -> str:
 
 def words() -> dict[str, str]:
     """Return the numbers of the sentences, by name."""
-    rows = rows_of("same_soil_gravities")
-    soil = [row for row in rows if not row["kind"].startswith(FINER)]
-    finer = [row for row in rows if row["kind"].startswith(FINER)]
+    soil = rows_of("same_soil_gravities")
     shares = sorted({row["share"] for row in soil}, reverse=True)
     slow, fast = min(row["speed"] for row in soil), max(row["speed"] for row in soil)
     balls = rows_of("ball_on_coarse_grains")
@@ -157,7 +152,6 @@ def words() -> dict[str, str]:
             f"{of_counts(those(soil, share=one, speed=slow), rebounds)} at {one:g}" for one in shares
         ),
         "fast_rebounds": of_counts(those(soil, share=shares[0], speed=fast), rebounds),
-        "finer_eject": of_counts(finer, ejects), "finer_rebound": of_counts(finer, rebounds),
         "coarse_drops": str(len(those(balls, name="cm", speed=balls[0]["speed"]))),
         "coarse_count": str(len(balls)),
         "cm_rebound": of_counts(those(balls, name="cm"), rebounds),
@@ -193,7 +187,7 @@ def of_ice(axis: Axes) -> None:
 
 def of_gravities(axis: Axes) -> None:
     """Fraction that rebounds over gravity, a line a speed."""
-    rows = [row for row in rows_of("same_soil_gravities") if not row["kind"].startswith(FINER)]
+    rows = rows_of("same_soil_gravities")
     shares = sorted({row["share"] for row in rows})
     for k, speed in enumerate(sorted({row["speed"] for row in rows})):
         cells = [those(rows, share=share, speed=speed) for share in shares]
