@@ -37,7 +37,7 @@ FLOWN = 0.02  # m above where it began
 CALM_SPEED, CALM_LOOKS = 0.01, 5  # m/s, looks
 # Grains that fill less of the space lie apart at first; of another restitution they lose more.
 LOOSE, RESTITUTION, DAMPED = 0.5, 0.5, 0.2
-STEPS = {RESTITUTION: 60.0, DAMPED: 70.0}  # in the shortest contact
+STEPS = {RESTITUTION: 60.0, DAMPED: 100.0}  # in the shortest contact
 HELD_SLIP, HELD_SPEED = 0.5 * PAD, 0.02  # m, m/s: more of either, and the slope does not hold the pad
 BORNE = 0.5 * PAD  # m deep at most, and the ground bears the pad
 

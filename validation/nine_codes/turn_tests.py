@@ -1,4 +1,4 @@
-"""What changes the speed at which a ball leaves the last grains above a floor: dashpot, order of pairs or wall?
+"""What changes the speed of a ball that leaves the last grains above a floor: dashpot, order, wall, damping or step?
 
     python validation/nine_codes/turn_tests.py --work FOLDER --out FOLDER [--only NAME ...]
 
@@ -10,7 +10,7 @@ they differ by is rounding. Writes turn_tests.csv, a line a run; rows that stand
 import math
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from impact import advance
 from impact_bed import BALL_RADIUS, GRAIN_RADIUS, GRAVITY, M1, STEEL, STEEL_OF_BALL, STEEL_OF_GRAINS, Floats
 
 from lithobrake.dem import Material, Sphere, World
+from lithobrake.dem.law.restitution import restitution_of
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 from harness import add_row, command_line, origin, read_rows, write_document
@@ -26,9 +27,24 @@ HERE = Path(__file__).parent
 HALF, DEEP, FILLED = 0.015, 0.006, 0.58  # m, m: of the box, and the share that grains take of the layer
 SPEED = 2.5  # m/s, of the ball above the layer
 SETTLING, FOLLOWED, LOOK = 0.02, 0.008, 1e-4  # s
-NUDGES = (0.0, 1e-9)  # m
+NUDGES = (0.0, 1e-9, -1e-9)  # m
 STEP = 5e-7  # s
 SMOOTH = Material(restitution=0.3, friction=0.0, **STEEL)
+
+
+def with_ratios(grain: Material, steel: Material) -> tuple[Material, Material]:
+    """Return both materials with the damping ratios that MercuryDPM has for their restitutions.
+
+    It takes the closed form of a contact whose damping may pull as it ends; here that damping loses less.
+    """
+    alike, unlike = (
+        restitution_of(-math.log(e) / math.hypot(math.log(e), math.pi))
+        for e in (grain.restitution, 0.5 * (grain.restitution + steel.restitution))
+    )
+    return replace(grain, restitution=alike), replace(steel, restitution=2.0 * unlike - alike)
+
+
+LESS_DAMPED = with_ratios(M1, STEEL_OF_GRAINS)
 
 
 @dataclass(frozen=True)
@@ -37,7 +53,10 @@ class Setting:
 
     dashpot: str = "none"
     backwards: bool = False  # grains numbered from the last to the first
+    grain: Material = M1
+    steel: Material = STEEL_OF_GRAINS  # of the ball, as the grains meet it
     floor: Material = STEEL_OF_GRAINS
+    step: float = STEP
 
 
 SETTINGS = {
@@ -45,14 +64,18 @@ SETTINGS = {
     "tangential dashpot": Setting(dashpot="mindlin"),
     "pairs in another order": Setting(backwards=True),
     "floor and walls without friction": Setting(floor=SMOOTH),
+    "damping ratios of MercuryDPM": Setting(grain=LESS_DAMPED[0], steel=LESS_DAMPED[1], floor=LESS_DAMPED[1]),
+    "half the step": Setting(step=0.5 * STEP),
+    "twice the step": Setting(step=2.0 * STEP),
+    "a quarter of the step": Setting(step=0.25 * STEP),
 }
 
 
 def box_of(places: Floats, setting: Setting) -> World:
     """Return grains at places [m] in the box."""
-    world = World((0.0, 0.0, -GRAVITY), STEP, pair_rule="mean", tangential_dashpot=setting.dashpot)
+    world = World((0.0, 0.0, -GRAVITY), setting.step, pair_rule="mean", tangential_dashpot=setting.dashpot)
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (len(places), 1))
-    grains = world.add_bodies([Sphere(GRAIN_RADIUS)] * len(places), M1, places, upright)
+    grains = world.add_bodies([Sphere(GRAIN_RADIUS)] * len(places), setting.grain, places, upright)
     walled(world, setting.floor, grains)
     return world
 
@@ -87,11 +110,11 @@ def rebound(places: Floats, setting: Setting, nudge: float) -> tuple[float, floa
     """Let the ball fall on the layer; return the fastest it goes up [m/s] and its lowest point above the floor [m]."""
     world = box_of(places[::-1] if setting.backwards else places, setting)
     height = float(places[:, 2].max()) + GRAIN_RADIUS + BALL_RADIUS + 5e-4
-    ball = world.add_body(Sphere(BALL_RADIUS), STEEL_OF_GRAINS, (nudge, 0.0, height), (0.0, 0.0, -SPEED))
+    ball = world.add_body(Sphere(BALL_RADIUS), setting.steel, (nudge, 0.0, height), (0.0, 0.0, -SPEED))
     walled(world, STEEL_OF_BALL, range(ball, ball + 1))
     lowest, fastest = height, -math.inf
     while world.time < FOLLOWED:
-        advance(world, world.time + LOOK, STEP)
+        advance(world, world.time + LOOK, setting.step)
         lowest = min(lowest, float(world.position[ball, 2]))
         fastest = max(fastest, float(world.velocity[ball, 2]))
         if world.position[ball, 2] > height:

@@ -216,8 +216,8 @@ def stand_in_words() -> str:
     return paragraph(
         f"Beside the runs of {first[0].lower()}{first[1:]} the mean rebound speed moves by (m/s): {moves}. Runs of one "
         f"setting, a billionth of a metre apart, differ by up to {apart:.3f} m/s. Of MercuryDPM's run heights alone "
-        "were kept, and no output of its contacts is public: they were not compared one by one, and which of them makes "
-        "its ball turn otherwise is unknown."
+        "were kept, and no output of its contacts is public: they were not compared one by one, and which "
+        "of them makes its ball turn otherwise is unknown."
     )
 
 
