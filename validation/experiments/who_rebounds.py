@@ -170,11 +170,11 @@ def of_material(world: World, kind: Kind, stuff: Material) -> World:
     return other
 
 
-def aimed(world: World, kind: Kind, place: tuple[float, float], velocity: tuple[float, float, float]) -> int:
+def aimed(world: World, kind: Kind, place: tuple[float, float], speed: float) -> int:
     """Put the ball where it touches the first grain below it, or its bounding sphere; return its number."""
     height = touch_height(world, Ball(DIAMETER, kind.ball_density, place)) + 0.5 * DIAMETER
     stuff = replace(world.bodies[0].material, density=kind.ball_density)
-    return world.add_body(Sphere(0.5 * DIAMETER), stuff, (*place, height), velocity=velocity)
+    return world.add_body(Sphere(0.5 * DIAMETER), stuff, (*place, height), velocity=(0.0, 0.0, -speed))
 
 
 def touching(world: World) -> np.ndarray:
@@ -249,7 +249,7 @@ def drop(work: Path, name: str, froude: float, number: int) -> Row:
     world = bed(work, name, froude, seed)
     x, y = (float(at) for at in np.random.default_rng([7, number]).uniform(0.0, kind.width, 2))
     ejecta = Ejecta(world)
-    ball = aimed(world, kind, (x, y), (0.0, 0.0, -speed))
+    ball = aimed(world, kind, (x, y), speed)
     row = followed(world, ball, speed, kind.steps)
     return {
         "kind": name, "froude": froude, "drop": number, "bed": seed, "grains": ball, **row,

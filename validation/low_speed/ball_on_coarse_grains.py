@@ -30,23 +30,19 @@ GRAINS = {
     "cm": CENTIMETRES,
     "mm": replace(CENTIMETRES, grain=0.006, width=0.06, depth=0.02),
 }
-# Grains, and degrees from the normal.
-NAMES = {"cm": ("cm", 0.0), "mm": ("mm", 0.0), "cm, 30 deg": ("cm", 30.0)}
 
 
 def dropped(work: Path, name: str, speed: float, number: int) -> Row:
     """Let one ball meet a bed, and return its row: lengths [m] as they are, speeds over the ball's at first touch."""
-    start, (grains, incidence_deg) = time.process_time(), NAMES[name]
-    kind = who_rebounds.KINDS[grains] = GRAINS[grains]
+    start = time.process_time()
+    kind = who_rebounds.KINDS[name] = GRAINS[name]
     froude = speed / math.sqrt(EARTH * SHARE * DIAMETER)
     fast, seed = kind.scaled(froude)[0], number % BEDS + 1
-    world = bed(work, grains, froude, seed)
+    world = bed(work, name, froude, seed)
     generator = np.random.default_rng([20, number])
     x, y = (float(at) for at in generator.uniform(0.0, kind.width, 2))
-    azimuth, angle = float(generator.uniform(0.0, 2.0 * math.pi)), math.radians(incidence_deg)
     ejecta = Ejecta(world)
-    aside = fast * math.sin(angle)
-    ball = aimed(world, kind, (x, y), (aside * math.cos(azimuth), aside * math.sin(azimuth), -fast * math.cos(angle)))
+    ball = aimed(world, kind, (x, y), fast)
     row = followed(world, ball, fast, kind.steps)
     way = world.position[ball, :2] - (x, y)
     return {
@@ -57,7 +53,7 @@ def dropped(work: Path, name: str, speed: float, number: int) -> Row:
 
 
 def main() -> None:
-    given = options_of(__doc__, HERE, drops=2, names=tuple(NAMES))
+    given = options_of(__doc__, HERE, drops=2, names=tuple(GRAINS))
     ran = {(row["name"], row["speed"], row["drop"]) for row in read_rows(given.out / NAME)}
     for name, number, speed in itertools.product(given.names, range(given.drops), SPEEDS):
         if (name, speed, number) not in ran:

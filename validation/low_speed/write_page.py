@@ -98,6 +98,7 @@ def of_counts(rows: list[Row], true: Callable[[Row], bool]) -> str:
 def ball_table(name: str, *keys: str) -> str:
     """Return of the balls of each cell, named by some columns, how many rebound, roll and throw up grains."""
     rows, found = rows_of(name), []
+    rows.sort(key=lambda row: (-row.get("share", 0.0), row[keys[0]], row["speed"]))
     for cell in dict.fromkeys(tuple(row[key] for key in keys) for row in rows):
         own = those(rows, **dict(zip(keys, cell, strict=True)))
         out = [row["ejecta_speed"] for row in own if ejects(row)]

@@ -217,7 +217,7 @@ def stand_in_words() -> str:
     steps = [abs(statistics.mean(speeds[name]) - statistics.mean(speeds[first])) for name in others if "step" in name]
     moved_by = max(steps) * (ASKED[2] - TURNED)
     return paragraph(
-        f"Beside the runs of {first[0].lower()}{first[1:]} the mean rebound speed moves by (m/s): {moves}. Runs of one "
+        f"Beside the first row the mean rebound speed moves by (m/s): {moves}. Runs of one "
         f"setting, a billionth of a metre apart, differ by up to {apart:.3f} m/s. The tangential dashpot moves the "
         "rebound most and the step next; the order of pairs, the walls' friction and the damping ratio do not move it "
         f"by more than rounding does. The step alone moves the ball by {mm(moved_by)} mm from its turn to "
