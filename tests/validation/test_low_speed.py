@@ -25,6 +25,10 @@ def test_bearing_capacity_has_the_factors_of_the_tables(script: Any) -> None:
     assert bears(math.radians(30.0), 1.0, 0.0, 1.0) == pytest.approx(0.3 * 22.40, abs=0.005)
 
 
+def test_loose_ground_has_two_thirds_of_the_friction(script: Any) -> None:
+    assert math.tan(script("plate_sinkage")["loosened"](math.atan(0.6))) == pytest.approx(0.4)
+
+
 def test_exponent_of_a_power_law_is_its_power(script: Any) -> None:
     sinkage = np.arange(0.0, 0.062, 5e-5)
     curve = np.column_stack([sinkage, 3e5 * sinkage**0.9])
@@ -49,6 +53,37 @@ def test_a_box_under_a_constant_force_makes_the_dent_of_the_source_in_its_time(s
 def test_the_cohesion_of_a_dent_lies_between_the_runs(script: Any, depths: Any, wanted: float) -> None:
     rows = [{"cohesion": c, "deepest": d} for c, d in zip((0.0, 10.0, 20.0), depths, strict=True)]
     assert script("answers")["cohesion_of_dent"](rows[::-1], 0.25) == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize("pad", ["hemisphere", "cone", "disk"])
+def test_pads_are_of_one_diameter_and_stand_on_their_lowest_point(script: Any, pad: str) -> None:
+    footpad = script("footpad_on_ice")
+    corners = footpad["pad_of"](pad).vertices
+    assert np.hypot(corners[:, 0], corners[:, 1]).max() == pytest.approx(0.5 * footpad["PAD"])
+    assert corners[:, 2].min() == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_run_of_a_pad_ends_where_it_flies_stands_or_meets_the_floor(script: Any) -> None:
+    ended = script("footpad_on_ice")["ended"]
+    falls = np.tile([0.1, 0.0, 0.0, -0.05, 0.0, 0.0, -0.5], (8, 1))
+    assert not ended(falls)
+    assert ended(falls * [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0])
+    assert ended(falls * [1.0, 1.0, 1.0, 10.0, 1.0, 1.0, 1.0])
+    assert ended(falls * [1.0, 1.0, 1.0, -1.0, 1.0, 1.0, -1.0])
+
+
+def test_a_pad_lands_only_where_it_is_borne_and_stands_near(script: Any) -> None:
+    lands = script("answers")["lands"]
+    good = {"deepest": 0.1, "slip": 0.1, "last_speed": 0.0}
+    assert lands(good)
+    assert not any(lands(good | change) for change in ({"deepest": 0.2}, {"slip": 0.2}, {"last_speed": 0.1}))
+
+
+def test_a_ball_rolls_only_where_it_does_not_bounce(script: Any) -> None:
+    rolls = script("answers")["rolls"]
+    assert rolls({"rise": 0.0, "way_along": 0.006})
+    assert not rolls({"rise": 0.001, "way_along": 0.006})
+    assert not rolls({"rise": 0.0, "way_along": 0.004})
 
 
 def test_every_claim_has_a_number_and_a_range(script: Any) -> None:

@@ -184,17 +184,17 @@ def column_tops(world: World, reach: float, spacing: float, about: tuple[float, 
     return tops
 
 
-def bulk_density(world: World, beads: Beads) -> float:
+def bulk_density(world: World, beads: Beads, above: float = 2.0, below: float = 4.0) -> float:
     """Mass of the beads in the middle over the volume of that part [kg/m3].
 
-    The part is a box half as wide as the bed, from two beads above the floor to four below the surface, filled by
+    The part is a box half as wide as the bed, from some beads above the floor to some below the surface, filled by
     points at random.
     """
     generator = np.random.default_rng(0)
     size = beads.mean_diameter
     level = float(column_tops(world, 0.25 * beads.width, 0.3 * size).mean())
-    low = np.array([-0.25 * beads.width, -0.25 * beads.width, 2.0 * size])
-    high = np.array([0.25 * beads.width, 0.25 * beads.width, level - 4.0 * size])
+    low = np.array([-0.25 * beads.width, -0.25 * beads.width, above * size])
+    high = np.array([0.25 * beads.width, 0.25 * beads.width, level - below * size])
     points = generator.uniform(low, high, (40_000, 3))
     inside = np.zeros(len(points), dtype=bool)
     tree = cKDTree(points)

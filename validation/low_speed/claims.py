@@ -1,7 +1,8 @@
 """What the sources of the low-speed cases say, and from where to where our number agrees: set before the first run.
 
 Sources: [Thuillet-2021] (abstract, caption of Fig 8), [Brisset-2018] (abstract), [Wen-2025] (abstract),
-[ORourke-2020] (abstract), [Negrut-2026] (the program and its comments), [Sinkage-2012] (abstract).
+[ORourke-2020] (abstract), [Negrut-2026] (the program and its comments), [Sinkage-2012] (abstract), [Brisset-2020]
+(abstract, first half), [Harmon-2023] (abstract).
 """
 
 import math
@@ -67,6 +68,21 @@ CLAIMS = (
     Claim("plate", "looser", "solid fraction, poured with cohesion less poured without", "below 0", -ANY, -MORE),
     Claim("plate", "weaker", "pressure at 60 mm, poured with cohesion / poured without, both pressed with", "below 1",
           -ANY, 1.0 - MORE),
+    # A ball on irregular grains of centimetres and of millimetres, along the normal. It rolls where it moves along the
+    # surface by more than a quarter of its diameter and does not bounce. "Frequent" is read as one in five. That
+    # bouncing is frequent is counted among the experiments.
+    Claim("coarse", "rolls", "fraction of balls that roll along the surface", "frequent", 0.2, ANY),
+    # A footpad on ice. The ground bears it where it comes no deeper than half its diameter; it lands where it also
+    # stands at last, no more than half its diameter away. Slopes: both sinterings, three pads, two beds.
+    Claim("footpad", "unsintered", "no sintering, level: fraction of pads that the ground bears",
+          "some sintering needed", -ANY, HALF - MORE),
+    Claim("footpad", "sintered", "some sintering, level: fraction of pads that the ground bears", "it bears them",
+          HALF + MORE, ANY),
+    Claim("footpad", "bounce", "rebound speed on level ground, much less some sintering [m/s]", "above 0", MORE, ANY),
+    Claim("footpad", "safe", "15 deg: fraction that lands", "safest up to 15 deg", 0.9, ANY),
+    Claim("footpad", "steep", "20 deg: fraction that lands", "in certain conditions", MORE, 1.0 - MORE),
+    Claim("footpad", "hemisphere", "mean slip on slopes, hemisphere less the better of cone and disk [m]", "below 0",
+          -ANY, -MORE),
 )  # fmt: skip
 
 

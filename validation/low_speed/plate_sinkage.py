@@ -3,7 +3,7 @@
     python validation/low_speed/plate_sinkage.py --work FOLDER --out FOLDER [--names NAME ...]
 
 Plate, speed, depth and materials are those of [Negrut-2026], whose grains are clumps of three spheres of 22 mm in
-a round bin; ours are spheres of 50 mm with rolling resistance, softer, on ground that repeats. Rows that stand in
+a round bin; ours are spheres of 60 mm with rolling resistance, softer, on ground that repeats. Rows that stand in
 plate_sinkage.csv are not run again.
 """
 
@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from lithobrake.dem import Material, World
+from lithobrake.touchdown import settling
 
 sys.path.extend([str(Path(__file__).parents[1] / "experiments"), str(Path(__file__).parents[2] / "benchmarks")])
 from repose import angle_of_repose
@@ -26,19 +27,18 @@ HERE = Path(__file__).parent
 NAME = "plate_sinkage.csv"
 PLATE, SPEED, DEEP, DATUM = 0.35, 0.05, 0.06, 1000.0  # m, m/s, m, Pa: the source
 WIDTH, BED, GRAVITY = 1.05, 0.28, 9.81  # m, m, m/s2: the source
-GRAIN = 0.05  # m
+GRAIN = 0.06  # m
+MIDDLE = (1.0, 1.5)  # grains above the floor and below the surface, between which the packing is measured
 ACCELERATION = 200.0  # m/s2, the source's cohesion: a pull of so much times the reduced mass of two grains
 DRY = Material(
     young_modulus=1e7, poisson_ratio=0.3, restitution=0.4, friction=0.5, density=2600.0, rolling_friction=0.1
 )
-PRESS_STEPS = 40.0  # in the shortest contact: damping in many contacts at once asks for more
 TICK = 1e-3  # s, between two moves of the plate
 AREA = 0.25 * math.pi * PLATE**2
 SHOWN = (0.005, 0.02, 0.04, 0.06)  # m
 # Name: whether grains pull on each other while they are poured, and while the plate is pressed; seed.
 NAMES = {
     "dry": (False, False, 1), "cohesive": (False, True, 1), "poured cohesive": (True, True, 1),
-    "dry, again": (False, False, 2), "cohesive, again": (False, True, 2), "poured cohesive, again": (True, True, 2),
 }  # fmt: skip
 
 
@@ -62,9 +62,8 @@ def prepared(work: Path, poured: bool, pressed: bool, seed: int) -> World:
         return bed
     world = empty_world(beads(pressed, seed))
     add_beads(world, np.array([body.shape.bounding_radius for body in bed.bodies]), stuff(pressed), places_of(bed))
-    world.time_step = world.shortest_contact(0.3) / PRESS_STEPS
     world.drag = math.sqrt(GRAVITY / GRAIN)
-    world.run(duration=0.3)
+    settling.run_quietly(world, 0.3)
     world.drag = 0.0
     return world
 
@@ -75,7 +74,6 @@ def pressed_in(world: World) -> Floats:
     The plate is a plane that meets the grains under its disc.
     """
     height = float(column_tops(world, 0.5 * PLATE, 0.1 * GRAIN).max()) + 1e-4
-    world.time_step = world.shortest_contact(0.3) / PRESS_STEPS
     plate = world.add_plane((0, 0, height), (0, 0, -1), DRY, bodies=[])
     looks: list[tuple[float, float]] = []
     datum = math.nan
@@ -84,7 +82,7 @@ def pressed_in(world: World) -> Floats:
         place = places_of(world)
         under = np.flatnonzero((np.hypot(place[:, 0], place[:, 1]) < 0.5 * PLATE) & (place[:, 2] < height))
         world.move_plane(plate, (0, 0, height), bodies=[int(k) for k in under])
-        world.run(duration=TICK)
+        settling.run_quietly(world, TICK)
         contacts = world.contacts()
         pressure = float(contacts["normal_force"][contacts["body_b"] == -1 - plate].sum()) / AREA
         if math.isnan(datum) and pressure >= DATUM:
@@ -117,11 +115,16 @@ def bearing_capacity(slope: float, unit_weight: float, depth: float, diameter: f
     return unit_weight * (depth * of_depth + 0.3 * diameter * of_width)
 
 
+def loosened(slope: float) -> float:
+    """Return the angle of friction [rad] for which loose ground that yields locally bears as much; [Terzaghi-1943]."""
+    return math.atan(2.0 / 3.0 * math.tan(slope))
+
+
 def run(name: str, work: Path) -> Row:
     poured, pressed, seed = NAMES[name]
     start = time.process_time()
     world = prepared(work, poured, pressed, seed)
-    density = bulk_density(world, beads(poured, seed))
+    density = bulk_density(world, beads(poured, seed), *MIDDLE)
     curve = pressed_in(world)
     np.savetxt(work / f"plate_{name.replace(' ', '_').replace(',', '')}.txt", curve)
     return {

@@ -1,6 +1,6 @@
 """Where does rebound appear? A 2 cm ball on one cohesive soil, at equal speeds under four gravities.
 
-    python validation/low_speed/same_soil_gravities.py --work FOLDER --out FOLDER [--drops 2] [--shares 0.01 1e-5]
+    python validation/low_speed/same_soil_gravities.py --work FOLDER --out FOLDER [--drops 4] [--shares 0.01 1e-5]
 
 The soil is the 6 mm grains as cohesive as lunar soil of ../experiments/who_rebounds.py; a drop is made as there. Rows
 that stand in same_soil_gravities.csv are not run again. Source: [Brisset-2018].
@@ -30,13 +30,13 @@ def froude(share: float, speed: float) -> float:
 
 
 def main() -> None:
-    given = options_of(__doc__, HERE, drops=2, shares=SHARES)
+    given = options_of(__doc__, HERE, drops=4, shares=SHARES)
     table = given.out / NAME
-    ran = {(row["share"], row["speed"], row["drop"]) for row in read_rows(table)}
+    ran = {(row["kind"], row["speed"], row["drop"]) for row in read_rows(table)}
     for number, share, speed in itertools.product(range(given.drops), given.shares, SPEEDS):
-        if (share, speed, number) in ran:
-            continue
         name = f"{share:g} g"
+        if (name, speed, number) in ran:
+            continue
         # Kinds of equal pour share one: the loose grains of "6 mm".
         who_rebounds.KINDS[name] = replace(SOIL, share=share)
         row = who_rebounds.drop(given.work, name, froude(share, speed), number)
