@@ -7,13 +7,20 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis import confidence
 from lithobrake.analysis.ground_spread import FEW
-from lithobrake.analysis.output_estimates import mean_estimate
+from lithobrake.analysis.missing_runs import Limits
+from lithobrake.analysis.output_estimates import mean_ends, mean_estimate
 from lithobrake.analysis.share_estimate import BED_VARIANCE_CONFIDENCE, ONE_BED, standard_error
 from lithobrake.vocabulary.estimate import Estimate
 
 
 def mean_over_beds(
-    y: ArrayLike, bed: ArrayLike, *, why: str | None = None, level: float = confidence.LEVEL
+    y: ArrayLike,
+    bed: ArrayLike,
+    *,
+    why: str | None = None,
+    level: float = confidence.LEVEL,
+    missing: ArrayLike | None = None,
+    limits: Limits | None = None,
 ) -> Estimate:
     """`mean_estimate`, without an interval where there is a reason `why`, and on one bed; NaN where no run has y."""
     values, beds = confidence.answered_runs(y, bed)
@@ -21,19 +28,26 @@ def mean_over_beds(
         return Estimate(math.nan, None, None, why_missing=why)
     if why is not None or len(np.unique(beds)) < 2:
         return Estimate(float(values.mean()), None, None, why_missing=why or ONE_BED)
-    return mean_estimate(y, bed, level=level)
+    return mean_estimate(y, bed, level=level, missing=missing, limits=limits)
 
 
 def mean_over_grounds(
-    y: ArrayLike, bed: ArrayLike, *, why: str | None = None, level: float = confidence.LEVEL
+    y: ArrayLike,
+    bed: ArrayLike,
+    *,
+    why: str | None = None,
+    level: float = confidence.LEVEL,
+    missing: ArrayLike | None = None,
+    limits: Limits | None = None,
 ) -> Estimate:
     """The mean of an output y [run_count], NaN where a run has none, with the interval of its mean on one ground.
 
-    bed: the ground of each run [run_count]. why: a reason why these runs give no interval. The output is taken as the
+    bed: the ground of each run [run_count]. why: a reason why these runs give no interval. missing, limits: as for
+    `mean_estimate`. The output is taken as the
     sum of what the ground and what all else adds, each with one variance; that of grounds stands at an upper limit, as
     in share_estimate. Source: [Searle-1992], section 3.6 (components of variance).
     """
-    mean = mean_over_beds(y, bed, why=why, level=level)
+    mean = mean_over_beds(y, bed, why=why, level=level, missing=missing, limits=limits)
     if mean.lower is None or mean.upper is None:
         return mean
     values, beds = confidence.answered_runs(y, bed)
@@ -42,5 +56,6 @@ def mean_over_grounds(
     components = confidence.bed_components(values, beds)
     variance = components.variance_at(BED_VARIANCE_CONFIDENCE) + standard_error(values, beds) ** 2
     half = confidence.normal_quantile(level) * math.sqrt(variance)
+    least, most = mean_ends(y, missing, limits)
     # The mean of one ground is known no better than that over all.
-    return Estimate(mean.value, min(mean.value - half, mean.lower), max(mean.value + half, mean.upper), level)
+    return Estimate(mean.value, min(least - half, mean.lower), max(most + half, mean.upper), level)

@@ -55,8 +55,8 @@ def mean_estimate(
         return Estimate(mean, mean - half, mean + half, level)
     kept = lost | np.isfinite(answers("y", y))
     beds = numbered_beds(np.asarray(bed)[kept], int(kept.sum()))
-    ends = [one[kept] for one in filled(answers("y", y), lost, (-math.inf, math.inf) if limits is None else limits)]
-    means, known = [float(one.mean()) for one in ends], [bool(np.isfinite(one).all()) for one in ends]
+    ends = _ends_of_missing(y, lost, limits)
+    means, known = mean_ends(y, missing, limits), [bool(np.isfinite(one).all()) for one in ends]
     errors = [standard_error(one, beds) if told else 0.0 for one, told in zip(ends, known, strict=True)]
     # Of one end alone a number can be missed on one side only; with both that follows from how far they are apart.
     width = max(means[1] - means[0], 0.0) if all(known) else math.inf
@@ -64,6 +64,23 @@ def mean_estimate(
     lower = min(means[0] - reach * errors[0], mean - half) if known[0] else None
     upper = max(means[1] + reach * errors[1], mean + half) if known[1] else None
     return Estimate(mean, lower, upper, level, why_missing=None if all(known) else none_bounds(lost, "the mean"))
+
+
+def mean_ends(y: ArrayLike, missing: ArrayLike | None, limits: Limits | None) -> Bounds:
+    """The mean of an output y [run_count] with every missing run at either of its limits, without sampling error.
+
+    missing, limits: as for `mean_estimate`. Infinite where nothing limits a missing run. Source: [Manski-2003].
+    """
+    least, most = _ends_of_missing(y, lost_runs(missing, y), limits)
+    return float(least.mean()), float(most.mean())
+
+
+def _ends_of_missing(y: ArrayLike, lost: NDArray[np.bool_], limits: Limits | None) -> tuple[Array, Array]:
+    """Values of the runs that have the output, or may have it, with the missing ones at either limit, [kept_count]."""
+    output = answers("y", y)
+    kept = lost | np.isfinite(output)
+    least, most = filled(output, lost, (-math.inf, math.inf) if limits is None else limits)
+    return least[kept], most[kept]
 
 
 def quantile_estimates(
