@@ -7,9 +7,10 @@ from numpy.typing import ArrayLike
 
 from lithobrake.analysis import confidence
 from lithobrake.analysis.ground_spread import FEW
-from lithobrake.analysis.missing_runs import Limits
-from lithobrake.analysis.output_estimates import mean_ends, mean_estimate
+from lithobrake.analysis.missing_runs import Limits, lost_runs
+from lithobrake.analysis.output_estimates import filled_ends, mean_estimate
 from lithobrake.analysis.share_estimate import BED_VARIANCE_CONFIDENCE, ONE_BED, standard_error
+from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
 
 
@@ -53,9 +54,17 @@ def mean_over_grounds(
     values, beds = confidence.answered_runs(y, bed)
     if len(values) - len(np.unique(beds)) < 1:
         return Estimate(mean.value, None, None, why_missing=FEW)
-    components = confidence.bed_components(values, beds)
-    variance = components.variance_at(BED_VARIANCE_CONFIDENCE) + standard_error(values, beds) ** 2
-    half = confidence.normal_quantile(level) * math.sqrt(variance)
-    least, most = mean_ends(y, missing, limits)
+    lost = lost_runs(missing, y)
+    kept = confidence.numbered_beds(
+        np.asarray(bed)[lost | np.isfinite(np.asarray(y, dtype=float))], len(values) + lost.sum()
+    )
+    ends = [(one, _half_width(one, kept, level)) for one in filled_ends(y, lost, limits)]
     # The mean of one ground is known no better than that over all.
-    return Estimate(mean.value, min(least - half, mean.lower), max(most + half, mean.upper), level)
+    lower, upper = (float(one.mean()) + sign * half for (one, half), sign in zip(ends, (-1.0, 1.0), strict=True))
+    return Estimate(mean.value, min(lower, mean.lower), max(upper, mean.upper), level)
+
+
+def _half_width(values: Array, beds: Labels, level: float) -> float:
+    """Of the mean on one ground."""
+    variance = confidence.bed_components(values, beds).variance_at(BED_VARIANCE_CONFIDENCE)
+    return confidence.normal_quantile(level) * math.sqrt(variance + standard_error(values, beds) ** 2)

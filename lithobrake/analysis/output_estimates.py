@@ -55,7 +55,7 @@ def mean_estimate(
         return Estimate(mean, mean - half, mean + half, level)
     kept = lost | np.isfinite(answers("y", y))
     beds = numbered_beds(np.asarray(bed)[kept], int(kept.sum()))
-    ends = _ends_of_missing(y, lost, limits)
+    ends = filled_ends(y, lost, limits)
     means, known = mean_ends(y, missing, limits), [bool(np.isfinite(one).all()) for one in ends]
     errors = [standard_error(one, beds) if told else 0.0 for one, told in zip(ends, known, strict=True)]
     # Of one end alone a number can be missed on one side only; with both that follows from how far they are apart.
@@ -71,11 +71,11 @@ def mean_ends(y: ArrayLike, missing: ArrayLike | None, limits: Limits | None) ->
 
     missing, limits: as for `mean_estimate`. Infinite where nothing limits a missing run. Source: [Manski-2003].
     """
-    least, most = _ends_of_missing(y, lost_runs(missing, y), limits)
+    least, most = filled_ends(y, lost_runs(missing, y), limits)
     return float(least.mean()), float(most.mean())
 
 
-def _ends_of_missing(y: ArrayLike, lost: NDArray[np.bool_], limits: Limits | None) -> tuple[Array, Array]:
+def filled_ends(y: ArrayLike, lost: NDArray[np.bool_], limits: Limits | None) -> tuple[Array, Array]:
     """Values of the runs that have the output, or may have it, with the missing ones at either limit, [kept_count]."""
     output = answers("y", y)
     kept = lost | np.isfinite(output)

@@ -37,6 +37,8 @@ REMEDIES = {
     TouchdownOutcome.TIME_LIMIT: "a longer landing.time_limit",
     FAILED: "the remedy that the reasons of the failed runs name (runs.sqlite)",
 }
+# Smaller shares have a digit after the point.
+FEW = 0.1
 # Ends that stand in sentences of their own.
 SAID_APART = (JourneyEnd.AT_REST, JourneyEnd.FAILED)
 # A program of the user's own has neither bed nor time limit in the study file.
@@ -132,6 +134,11 @@ def assumed_at_rest(least: float, of: str) -> str:
 def unknown_outcome(share: float, digits: int = 0) -> str:
     """Which fraction has an unknown outcome."""
     return f"{percent(share, digits)} have an unknown outcome"
+
+
+def covered(share: float) -> str:
+    """Which fraction has an unknown outcome, where the interval covers all that they may have done."""
+    return f"{unknown_outcome(share, 0 if share >= FEW else 1)}, and the interval holds whatever became of them"
 
 
 def lost(outcomes: Mapping[str, int]) -> str:

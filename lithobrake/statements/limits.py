@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.statements.ends import unknown_outcome
+from lithobrake.statements.ends import covered, unknown_outcome
 from lithobrake.statements.labels import bracket, two_digits
 from lithobrake.vocabulary.number_words import (
     at_level,
@@ -56,7 +56,7 @@ def journey_state(name: str, found: "LimitStateResult") -> str:
     if found.if_aimed is not None:
         said[0] += f"; with the mean on the aim point it would be {with_interval(found.if_aimed)}"
     if runs.missing > 0.0:
-        said.append(f"{unknown_outcome(runs.missing)}, and the interval holds whatever became of them")
+        said.append(covered(runs.missing))
     if found.grounds:
         kinds = ", ".join(f"{kind} {with_interval(share)}" for kind, share in found.grounds.items())
         said.append(f"By kind of ground: {kinds}")
@@ -86,7 +86,7 @@ def limit_state(name: str, found: "LimitStateResult") -> str:
     else:
         said += f", from {found.runs.from_}"
     if found.runs.missing > 0.0:
-        said += f"; {unknown_outcome(found.runs.missing, 1)}, and the interval holds whatever became of them"
+        said += f"; {covered(found.runs.missing)}"
     made = _correlated(found)
     none = "No input is significant" if found.inputs else "Its correlated inputs are unknown"
     return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
@@ -180,8 +180,7 @@ def _of_best(table: "AimResults") -> str:
         far, late = part.distance_p95.value, part.time_p95.value
         said += f", {percent(FAR)} of these within {number(far)} m and {duration(late)}"
     if part.missing >= 0.005:
-        covers = ", and the interval holds whatever became of them" if best.own is not None else ""
-        said += f"; {unknown_outcome(part.missing)}{covers}"
+        said += f"; {unknown_outcome(part.missing) if best.own is None else covered(part.missing)}"
     return said
 
 
