@@ -29,7 +29,7 @@ ANGLE, PLACE = (0.3, 0.9), (4.0, 15.0)
 # Of the logit of the fraction by the logarithm of the size, and of the beds; of the logarithm of the time.
 SLOPE, OF_BED, TIME = 0.8, 0.5, (0.4, 0.3, 0.6)
 SIZES, NODES = (0.02, 0.2), np.polynomial.hermite_e.hermegauss(40)
-INPUTS = {name: Uniform(0.0, 1.0) for name in ("soil", "arrival")}
+INPUTS = {name: Uniform(0.0, 1.0) for name in ("friction", "speed")}
 # Variances of the parts of an output; the attitude is a normal number of its own.
 PARTS = {"soil": 0.2, "arrival": 0.1, "attitude": 0.1, "bed": 0.1, "place": 0.5}
 # Probability of a limit state at either end of the first input.
@@ -88,12 +88,12 @@ def inputs_and_parts(random: np.random.Generator, bed: np.ndarray, seed: int) ->
     failing = (random.random(RUNS) < low + (high - low) * x[:, 0]).astype(float)
     at = np.linspace(0.0, 1.0, 1001)
     distance = float(np.abs((low * at + 0.5 * (high - low) * at**2) / (low + 0.5 * (high - low)) - at).max())
-    found = {"distance of an input": held(failure_inputs(INPUTS, x, failing, bed, seed)["soil"].distance, distance)}
+    found = {"distance of an input": held(failure_inputs(INPUTS, x, failing, bed, seed)["friction"].distance, distance)}
     attitude = random.standard_normal((RUNS, 1))
     of_inputs = math.sqrt(12.0) * (x - 0.5)
     y = np.column_stack([of_inputs, attitude]) @ np.sqrt([PARTS[name] for name in ("soil", "arrival", "attitude")])
     y += of_beds(random, (math.sqrt(PARTS["bed"]), math.sqrt(PARTS["place"])), bed)
-    parts = variance_shares(INPUTS, x, y, bed, soil=["soil"], attitude=attitude)
+    parts = variance_shares(INPUTS, x, y, bed, soil=["friction"], attitude=attitude)
     return found | {f"part of {name}": held(getattr(parts, name), share) for name, share in PARTS.items()}
 
 
