@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -75,7 +75,8 @@ class VarianceShares:
 
     def _with(self, changed: Callable[[str, Estimate], Estimate]) -> "VarianceShares":
         by_input = {name: changed(name, one) for name, one in self.soil_by_input.items()}
-        return replace(self, soil_by_input=by_input, **{name: changed(name, one) for name, one in self._known.items()})
+        parts: dict[str, Any] = {name: changed(name, one) for name, one in self._known.items()}
+        return replace(self, soil_by_input=by_input, **parts)
 
     def without_bounds(self, why: str) -> "VarianceShares":
         """The same parts without intervals, for a reason."""

@@ -241,8 +241,8 @@ def quantile_of_some(
     if not part:
         levels = below[0].bounds
     else:
-        lower, upper = level - below[0].value + below[0].bounds[0], level - below[1].value + below[1].bounds[1]
-        levels = max((lower - part) / (1.0 - part), 0.0), min(upper / (1.0 - part), 1.0)
+        least, most = level - below[0].value + below[0].bounds[0], level - below[1].value + below[1].bounds[1]
+        levels = max((least - part) / (1.0 - part), 0.0), min(most / (1.0 - part), 1.0)
     value, *bounds = quantile_within(own, level, levels)
     # Few landers give no interval of a tail.
     lower, upper = (end if math.isfinite(end) else None for end in bounds)
