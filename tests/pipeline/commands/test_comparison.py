@@ -155,7 +155,7 @@ def test_differences_are_those_of_the_pairs(pair: tuple[Path, Path]) -> None:
     assert answer.missing == tuple(one.mean() for one in failed)
     means = [one[~out].mean() for one, out in zip(rests, failed, strict=True)]
     assert answer.difference.value == pytest.approx(means[1] - means[0])
-    assert "have an unknown outcome, and the bounds hold whatever became of them" in sentence(found, "at_rest")
+    assert "have an unknown outcome, and bounds hold whatever became of them" in sentence(found, "at_rest")
     assert answer.difference.lower < answer.difference.value < answer.difference.upper
     time = found.answers["time_s_median"]
     medians = [np.median(table["time_s"][:36][rest]) for table, rest in zip((slow, fast), rests, strict=True)]
