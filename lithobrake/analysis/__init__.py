@@ -1,14 +1,7 @@
 """What runs and a fitted expansion say: estimates with their intervals, samples, outcomes."""
 
 from lithobrake.analysis.bayesian_inference import LearntInput, Posterior, infer
-from lithobrake.analysis.comparisons import (
-    BestChoice,
-    PairedDifference,
-    best_choice,
-    quantile_difference,
-    quantile_within,
-    share_difference,
-)
+from lithobrake.analysis.best_choice import BestChoice, best_choice, quantile_within
 from lithobrake.analysis.confidence import LEVEL, wilson_interval
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms, soil_total_effect
 from lithobrake.analysis.equal_area import EqualAreaCells
@@ -40,6 +33,7 @@ from lithobrake.analysis.output_estimates import (
     quantile_estimate,
     quantile_estimates,
 )
+from lithobrake.analysis.paired_difference import PairedDifference, quantile_difference, share_difference
 from lithobrake.analysis.posterior import Observation, bed_shares, beds_statement
 from lithobrake.analysis.regions import DensityRegion, Ellipses, HighestDensity, dispersion_ellipses, highest_density
 from lithobrake.analysis.share_estimate import share_estimate

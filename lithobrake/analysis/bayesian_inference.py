@@ -20,7 +20,7 @@ from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.constants import LEAST_PROBABILITY
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.given_numbers import random_numbers, sample_count, whole_number
-from lithobrake.vocabulary.number_words import at_level
+from lithobrake.vocabulary.number_words import at_level, percent
 
 REFIT_COUNT = 30
 POINT_COUNT = 1 << 12
@@ -58,6 +58,8 @@ class Posterior:
     points [point_count, input_count] in physical units, of the inputs that all bounces share; weights [point_count],
     which sum to 1; effective_count: of so many equal points they are worth; log_evidence: logarithm of the mean
     likelihood over the prior, by points that were drawn from it and near it; remedy: where too few carry weight.
+    open_weight [point_count]: how many times its weight each point may have, at least 1, where runs of the emulator are
+    missing; missing: their share of its runs.
     """
 
     inputs: dict[str, Distribution]
@@ -66,6 +68,8 @@ class Posterior:
     effective_count: float
     log_evidence: float
     remedy: str = ""
+    open_weight: Array | None = None
+    missing: float = 0.0
 
     @property
     def is_reliable(self) -> bool:
@@ -83,6 +87,8 @@ class Posterior:
         found = {}
         for (name, law), values in zip(self.inputs.items(), self.points.T, strict=True):
             lower, middle, upper = weighted_quantiles(values, self.weights, ends)
+            if self.open_weight is not None:
+                lower, upper = open_quantiles(values, self.weights, self.open_weight, (ends[0], ends[2]))
             least, median, most = (float(law.ppf(end)) for end in ends)
             germ = law.germ(values)
             # Where one point has all the weight its law has no width, and no more is known of it.
@@ -108,6 +114,11 @@ class Posterior:
         if not self.is_reliable:
             few = f"only {self.effective_count:.0f} points carry weight, too few to trust any of this"
             said.append(f"{few}: {self.remedy}" if self.remedy else few)
+        if self.open_weight is not None:
+            said.append(
+                f"{percent(self.missing, 1)} of the runs of the emulator have no outcome: intervals hold whether these "
+                "would have given what was observed never, or as often as other runs on their soil"
+            )
         words = "; ".join(said)
         return f"{words[0].upper()}{words[1:]}." if said[0].startswith("the") else f"{words}."
 
@@ -133,6 +144,7 @@ def infer(
     refit_count: int = REFIT_COUNT,
     point_count: int = POINT_COUNT,
     seed: int = 0,
+    missing: Collection[str] = (),
 ) -> Posterior:
     """Infer the inputs of an emulator from observed bounces; its input distributions are the prior.
 
@@ -143,6 +155,11 @@ def infer(
     these rounds end with fewer the walkers of emcee follow, if it is installed.
     Bounces on one bed (`Observation.bed`) share its effect, as large as that of the groups of the emulator's runs in
     each refit; a bounce without a word for its bed has one of its own.
+    missing: outcomes of the emulator's runs of which it is not known what became of them, as of a lander that left the
+    bed. A landing on the body has none of these. At a point where the emulator gives them a chance, they would have
+    given what was observed never, or as often as the other runs there, or anything between: each weight lies between
+    two, and the bounds of an input are the outermost quantiles of all such laws.
+    Source of the bounds with missing runs: [DeRobertis-1981] (intervals of measures).
     Raises ValueError for no observation, for names and values that cannot be, and for a shared bed where no group of
     the emulator has two runs.
     """
@@ -157,7 +174,48 @@ def infer(
         return _likelihood(models, observations, laws, _physical(laws, scores), bounds, draws)
 
     found = _drawn(laws, logarithm, point_count, seed)
-    return found if found.is_reliable else _walked(found, logarithm, seed)
+    found = found if found.is_reliable else _walked(found, logarithm, seed)
+    lost = [name for name in missing if name in model.outcome_names]
+    share = float(np.isin(np.array(model.outcome_names)[model.runs.outcome], lost).mean())
+    if not share:
+        return found
+    return replace(found, open_weight=_open_weight(model, observations, found, lost, seed), missing=share)
+
+
+def _open_weight(
+    model: Emulator, observations: Sequence[posterior.Observation], found: Posterior, lost: Sequence[str], seed: int
+) -> Array:
+    """How many times its weight each point may have: over the bounces, runs with any outcome over those without."""
+    shared, total = dict(zip(found.inputs, found.points.T, strict=True)), np.ones(len(found.points))
+    places = [model.outcome_names.index(name) for name in lost]
+    for number, one in enumerate(observations):
+        x = posterior.completed_points(
+            model.runs.inputs, {**shared, **one.known}, len(found.points), seed * 1000 + number
+        )
+        chances = model.classes.chances(model.terms.matrix(checked_points(model.runs.inputs, x)))
+        ended = model.runs.output_outcome if one.outcome is None else model.outcome_names.index(one.outcome)
+        total *= 1.0 + chances[:, places].sum(axis=1) / np.maximum(chances[:, ended], LEAST_PROBABILITY)
+    return total
+
+
+def open_quantiles(
+    values: Array, weights: Array, factors: Array, probabilities: tuple[float, float]
+) -> tuple[float, float]:
+    """The smallest quantile of the first probability and the largest of the second, all [point_count].
+
+    Of all laws whose weights lie between `weights` and these times `factors`, which are at least 1.
+    Source: [DeRobertis-1981].
+    """
+    order = np.argsort(values)
+    least, most = weights[order], (weights * factors)[order]
+    up_to = [np.cumsum(one) - 0.5 * one for one in (least, most)]
+    beyond = [one.sum() - below for one, below in zip((least, most), up_to, strict=True)]
+    # Below a value a law has most where the points below have their largest weights and the others their smallest.
+    largest, smallest = up_to[1] / (up_to[1] + beyond[0]), up_to[0] / (up_to[0] + beyond[1])
+    return (
+        float(np.interp(probabilities[0], largest, values[order])),
+        float(np.interp(probabilities[1], smallest, values[order])),
+    )
 
 
 def _drawn(laws: Mapping[str, Distribution], logarithm: Likelihood, point_count: int, seed: int) -> Posterior:

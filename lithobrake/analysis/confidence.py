@@ -37,7 +37,7 @@ def t_quantile(freedom: float, level: float = LEVEL) -> float:
     return float(special.stdtrit(freedom, 0.5 + 0.5 * level))
 
 
-def partial_quantile(width: float, error: float, freedom: float) -> float:
+def partial_quantile(width: float, error: float, freedom: float, level: float = LEVEL) -> float:
     """Errors to add outside of both ends of an identified range, so that each number within it is held at the level.
 
     width: of the range, at least 0; error: standard error of its ends, the larger one, above 0, in the same unit. From
@@ -47,13 +47,13 @@ def partial_quantile(width: float, error: float, freedom: float) -> float:
     """
 
     def excess(quantile: float) -> float:
-        return float(special.stdtr(freedom, quantile + width / error) - special.stdtr(freedom, -quantile)) - LEVEL
+        return float(special.stdtr(freedom, quantile + width / error) - special.stdtr(freedom, -quantile)) - level
 
-    two_sided = t_quantile(freedom)
+    two_sided = t_quantile(freedom, level)
     # Without a width rounding alone decides the sign.
     if excess(two_sided) <= 0.0:
         return two_sided
-    return float(optimize.brentq(excess, 0.99 * float(special.stdtrit(freedom, LEVEL)), two_sided))
+    return float(optimize.brentq(excess, 0.99 * float(special.stdtrit(freedom, level)), two_sided))
 
 
 def normal_quantile(level: float = LEVEL) -> float:

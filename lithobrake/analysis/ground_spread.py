@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis import confidence
-from lithobrake.analysis.output_estimates import quantile_estimate
+from lithobrake.analysis.output_estimates import quantile_ends, quantile_estimate
 from lithobrake.analysis.share_estimate import BED_VARIANCE_CONFIDENCE, share_estimate, standard_error
 from lithobrake.vocabulary.estimate import Estimate
 
@@ -18,8 +18,9 @@ FEW = "each ground has one run with the output: how far grounds differ is not kn
 
 
 def share_over_grounds(met: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> Estimate:
-    """The mean share of runs that meet an event [run_count, 0 or 1], with the interval of the share on one ground.
+    """The mean share of runs that meet an event [run_count: 1, 0, or NaN where nobody knows], on one ground.
 
+    Its interval is that of the share on one ground, whatever the runs do of which nobody knows.
     bed: the ground of each run [run_count]. why: a reason why these runs give no interval. Where no run or every run
     meets the event the interval is that of the mean over grounds: none of them was seen to differ.
     """
@@ -31,14 +32,17 @@ def share_over_grounds(met: ArrayLike, bed: ArrayLike, *, why: str | None = None
     return Estimate(found.share.value, *found.next_bed)
 
 
-def median_over_grounds(y: ArrayLike, bed: ArrayLike, *, why: str | None = None) -> Estimate:
+def median_over_grounds(
+    y: ArrayLike, bed: ArrayLike, *, why: str | None = None, missing: ArrayLike | None = None
+) -> Estimate:
     """The median of an output y [run_count] above 0, NaN where a run has none, with the interval of that on one ground.
 
-    bed: the ground of each run [run_count]. why: as above. The logarithm is taken as the sum of what the ground and
+    bed: the ground of each run [run_count]. why: as above. missing [run_count]: whether it is not known what became of
+    a run, so that its value may lie below or above all others. The logarithm is taken as the sum of what the ground and
     what all else adds, each with one variance; that of grounds stands at an upper limit, as in share_estimate.
     Source: [Searle-1992], section 3.6 (components of variance).
     """
-    middle = quantile_estimate(y, bed, 0.5, why=why)
+    middle = quantile_estimate(y, bed, 0.5, why=why, missing=missing)
     if middle.lower is None and middle.upper is None:
         return middle
     values, beds = confidence.answered_runs(y, bed)
@@ -48,6 +52,8 @@ def median_over_grounds(y: ArrayLike, bed: ArrayLike, *, why: str | None = None)
     components = confidence.bed_components(logarithm, beds)
     variance = components.variance_at(BED_VARIANCE_CONFIDENCE) + standard_error(logarithm, beds) ** 2
     factor = math.exp(confidence.normal_quantile() * math.sqrt(variance))
+    least, most = quantile_ends(y, 0.5, missing)
     # The median of one ground is known no better than that over all.
-    lower, upper = middle.value / factor, middle.value * factor
-    return Estimate(middle.value, min(lower, middle.lower or lower), max(upper, middle.upper or upper))
+    lower = None if least is None else min(least / factor, middle.lower or least / factor)
+    upper = None if most is None else max(most * factor, middle.upper or most * factor)
+    return Estimate(middle.value, lower, upper, why_missing=middle.why_missing if None in (lower, upper) else None)

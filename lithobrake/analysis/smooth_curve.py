@@ -1,11 +1,14 @@
 """A share and a median as smooth curves of a size that differs from bed to bed, with bounds over resampled beds."""
 
+import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis.confidence import LEVEL
+from lithobrake.analysis.missing_runs import filled, lost_runs
 from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.estimate import Estimate
 
@@ -21,31 +24,61 @@ def curve_sizes(size: ArrayLike) -> Array:
     return found
 
 
-def share_curve(met: ArrayLike, size: ArrayLike, bed: ArrayLike, seed: int) -> list[Estimate]:
+def share_curve(
+    met: ArrayLike, size: ArrayLike, bed: ArrayLike, seed: int, missing: ArrayLike | None = None
+) -> list[Estimate]:
     """The share of runs that meet an event [run_count, 0 or 1, NaN: not asked] at each of curve_sizes(size).
 
     size: of the bed of each run [run_count], above 0; bed: label of the bed [run_count]. A mean weighted by a normal
-    kernel in the logarithm of the size; bounds hold LEVEL of the curves of resampled beds.
+    kernel in the logarithm of the size; bounds hold LEVEL of the curves of resampled beds. missing [run_count]: whether
+    it is not known what became of a run; bounds are those with all of them at either end.
     Source: [Nadaraya-1964] (kernel regression); [Davison-1997], section 3.8 (resampling of clusters).
     """
-    values = np.asarray(met, dtype=float)
-    known = np.isfinite(values)
-    return _curve(lambda weight: weight @ values[known] / weight.sum(axis=1), known, size, bed, seed)
+
+    def curve(values: Array) -> list[Estimate]:
+        known = ~np.isnan(values)
+        return _curve(lambda weight: weight @ values[known] / weight.sum(axis=1), known, size, bed, seed)
+
+    return _over_missing(curve, met, missing, (0.0, 1.0))
 
 
-def median_curve(y: ArrayLike, size: ArrayLike, bed: ArrayLike, seed: int) -> list[Estimate]:
+def median_curve(
+    y: ArrayLike, size: ArrayLike, bed: ArrayLike, seed: int, missing: ArrayLike | None = None
+) -> list[Estimate]:
     """The same of the median of an output y [run_count], NaN where a run has none."""
+
+    def curve(values: Array) -> list[Estimate]:
+        known = ~np.isnan(values)
+        order = np.argsort(values[known])
+
+        def medians(weight: Array) -> Array:
+            below = np.cumsum(weight[:, order], axis=1)
+            place = np.argmax(below >= 0.5 * below[:, -1:], axis=1)
+            found: Array = values[known][order][place]
+            return found
+
+        return _curve(medians, known, size, bed, seed)
+
+    return _over_missing(curve, y, missing, (-math.inf, math.inf))
+
+
+def _over_missing(
+    curve: Callable[[Array], list[Estimate]], y: ArrayLike, missing: ArrayLike | None, limits: tuple[float, float]
+) -> list[Estimate]:
+    """A curve whose bounds are those with missing runs at either limit; a bound beyond all values is None."""
     values = np.asarray(y, dtype=float)
-    known = np.isfinite(values)
-    order = np.argsort(values[known])
-
-    def medians(weight: Array) -> Array:
-        below = np.cumsum(weight[:, order], axis=1)
-        place = np.argmax(below >= 0.5 * below[:, -1:], axis=1)
-        found: Array = values[known][order][place]
+    lost, found = lost_runs(missing, values), curve(values)
+    if not lost.any():
         return found
+    ends = [curve(one) for one in filled(values, lost, limits)]
+    return [
+        replace(one, lower=_finite(least.lower), upper=_finite(most.upper))
+        for one, least, most in zip(found, *ends, strict=True)
+    ]
 
-    return _curve(medians, known, size, bed, seed)
+
+def _finite(end: float | None) -> float | None:
+    return end if end is not None and math.isfinite(end) else None
 
 
 def _curve(

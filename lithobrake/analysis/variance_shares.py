@@ -1,25 +1,28 @@
 """Where the scatter of an output comes from: soil, arrival, attitude, bed, chaos, and everything else."""
 
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lithobrake.analysis import confidence
-from lithobrake.analysis.control_variate import chaos_variance, regression_terms
+from lithobrake.analysis.control_variate import chaos_variance
+from lithobrake.analysis.missing_runs import Limits, filled, lost_runs, none_bounds
+from lithobrake.analysis.variance_terms import (
+    ROUNDING,
+    Regression,
+    affordable_terms,
+    checked_attitude,
+    filled_shares,
+    regression,
+)
 from lithobrake.chaos.basis import checked_points
 from lithobrake.chaos.distributions import Distribution
 from lithobrake.chaos.training_data import one_thread
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.estimate import Estimate
-
-# More terms than this for each run leave too little of the runs to tell scatter by.
-TERMS_PER_RUN = 1 / 3
-# A scatter within beds that is less than this part of the whole is rounding.
-ROUNDING = 1e-12
-BOTH = "terms of first and second degree"
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,43 @@ class VarianceShares:
         """
         return self.soil.on_scale(lambda share: 4.0 * share / (1.0 + 3.0 * share))
 
+    @property
+    def _known(self) -> dict[str, Estimate]:
+        """The parts that are known, by their names, without those of single soil inputs."""
+        found = {name: getattr(self, name) for name in ("soil", "arrival", "attitude", "bed", "place", "chaos")}
+        return {name: one for name, one in found.items() if one is not None}
+
+    def _with(self, changed: Callable[[str, Estimate], Estimate]) -> "VarianceShares":
+        by_input = {name: changed(name, one) for name, one in self.soil_by_input.items()}
+        parts: dict[str, Any] = {name: changed(name, one) for name, one in self._known.items()}
+        return replace(self, soil_by_input=by_input, **parts)
+
+    def without_bounds(self, why: str) -> "VarianceShares":
+        """The same parts without intervals, for a reason."""
+        return self._with(lambda name, one: replace(one, lower=None, upper=None, why_missing=why))
+
+    def over(self, others: Sequence[tuple[float, Mapping[str, float]]]) -> "VarianceShares":
+        """The same with intervals that hold the parts of others, each a variance and its shares, not cut, by name.
+
+        As far beyond the others as the intervals reach beyond the parts themselves.
+        """
+
+        def widened(name: str, one: Estimate) -> Estimate:
+            if name == "chaos":
+                found = [min(one.value * self.variance / total, 1.0) for total, _ in others]
+            elif name == "place":
+                found = [1.0 - sum(shares[part] for part in self._known if part in shares) for _, shares in others]
+                found = [rest - (0.0 if self.chaos is None else self.chaos.value * self.variance / total)
+                         for rest, (total, _) in zip(found, others, strict=True)]  # fmt: skip
+            else:
+                found = [shares[name] for _, shares in others if name in shares]
+            cut = [min(max(share, 0.0), 1.0) for share in (*found, one.value)]
+            assert one.bounds is not None
+            lower, upper = min(cut) - (one.value - one.bounds[0]), max(cut) + (one.bounds[1] - one.value)
+            return replace(one, lower=max(lower, 0.0), upper=min(upper, 1.0))
+
+        return self._with(widened)
+
 
 class _Part(NamedTuple):
     """A share of the variance, free of bias and not cut, with its bounds, not cut either, and its bounds to print."""
@@ -89,21 +129,6 @@ class _Part(NamedTuple):
         return Estimate(value, min(max(self.printed[0], 0.0), value), max(min(self.printed[1], 1.0), value))
 
 
-class _Terms(NamedTuple):
-    """Terms to regress on: matrix [run_count, term_count], by part which of them make it up [term_count], in words."""
-
-    matrix: Array
-    groups: dict[str, np.ndarray]
-    words: str
-
-
-class _Regression(NamedTuple):
-    """Least squares on terms: squares [term_count] of coefficients freed of scatter, and the variance of residuals."""
-
-    squares: Array
-    scatter: float
-
-
 @one_thread()
 def variance_shares(
     inputs: Mapping[str, Distribution],
@@ -114,27 +139,48 @@ def variance_shares(
     soil: Collection[str],
     attitude: ArrayLike | None = None,
     twins: ArrayLike | None = None,
+    missing: ArrayLike | None = None,
+    limits: Limits | None = None,
 ) -> VarianceShares | None:
     """Split the variance of an output y [run_count] (NaN: none) of runs at x [run_count, input_count] on beds.
 
     soil: names of the inputs that are soil. attitude [run_count, term_count]: terms of the attitude, of mean 0,
     variance 1 and no correlation over its law. twins [pair_count]: differences of the output between twins. None where
     the runs cannot tell: one bed, runs all alike or alike on each bed, or fewer than three runs for each input.
+    missing [run_count]: whether it is not known what became of a run, so that it may have the output or not; limits:
+    least and most that a run may have, each a number or [run_count]. Bounds of a part reach to its smallest and its
+    largest share over missing runs that have all the least, all the most, or of both what adds to or takes from one of
+    the parts; without limits there are none.
     Intervals: of terms by leaving out one bed after another, of the bed by F, of chaos by chi-square, of the rest from
     those of the others.
     Source: [Searle-1992], section 3.6 (analysis of variance); [Sudret-2008], Eq 36 (squares of coefficients).
     """
     of_all = confidence.answers("y", y)
     points = _checked_points(inputs, x, of_all, soil)
+    lost = lost_runs(missing, of_all)
+    found = _of_known(inputs, points, of_all, bed, soil, attitude, twins)
+    if found is None or not lost.any():
+        return found
+    if limits is None:
+        return found.without_bounds(none_bounds(lost, "the variance"))
+    fills = list(filled_shares(inputs, points, of_all, bed, soil, attitude, filled(of_all, lost, limits)))
+    return found.over([one for one in fills if one is not None])
+
+
+def _of_known(
+    inputs: Mapping[str, Distribution], points: Array, of_all: Array, bed: ArrayLike, soil: Collection[str],
+    attitude: ArrayLike | None, twins: ArrayLike | None,
+) -> VarianceShares | None:  # fmt: skip
+    """The parts of the variance of the runs that have the output."""
     known = np.isfinite(of_all)
     values, beds = confidence.answered_runs(of_all, bed)
     points = points[known]
     if len(values) < 2 or beds.max() == 0 or np.ptp(values) == 0.0:
         return None
-    used = _affordable(inputs, points, soil, _checked_attitude(attitude, known))
+    used = affordable_terms(inputs, points, soil, checked_attitude(attitude, known))
     if used is None or len(values) - int(beds.max()) - 2 - used.matrix.shape[1] < 1:
         return None
-    found = _regression(used.matrix, values)
+    found = regression(used.matrix, values)
     components = confidence.bed_components(values, beds, used.matrix)
     if components.within <= ROUNDING * float(np.var(values)):
         return None
@@ -176,78 +222,14 @@ def _checked_points(inputs: Mapping[str, Distribution], x: ArrayLike, y: Array, 
     return points
 
 
-def _checked_attitude(attitude: ArrayLike | None, known: np.ndarray) -> Array:
-    """Terms of the attitude of the runs that are known, [known_count, term_count]. Raises ValueError for others."""
-    if attitude is None:
-        return np.empty((int(known.sum()), 0))
-    terms = np.asarray(attitude, dtype=float)
-    if terms.ndim != 2 or len(terms) != len(known) or not np.isfinite(terms).all():
-        raise ValueError(
-            f"attitude has shape {terms.shape}; allowed: finite numbers [run_count, term_count], a row for each of the "
-            f"{len(known)} runs of x"
-        )
-    return terms[known]
-
-
-def _affordable(
-    inputs: Mapping[str, Distribution], points: Array, soil: Collection[str], attitude: Array
-) -> _Terms | None:
-    """The terms that the runs can bear; None where not even linear ones.
-
-    Of second degree all, or squares alone, or none; where there are still too many, the attitude goes unseen.
-    """
-    terms, indices = regression_terms(inputs, points)
-    degree, squares = indices.sum(axis=1), (indices > 0).sum(axis=1) == 1
-    choices = ((degree > 0, BOTH), (squares, f"{BOTH}, without products"), (degree == 1, "terms of first degree"))
-    for extra in (attitude, attitude[:, :0]):
-        for used, words in choices:
-            count = int(used.sum()) + extra.shape[1]
-            if count <= TERMS_PER_RUN * len(points):
-                groups = _groups(inputs, indices[used], soil, extra.shape[1])
-                return _Terms(np.hstack([terms[:, used], extra]), groups, words)
-    return None
-
-
-def _groups(
-    inputs: Mapping[str, Distribution], indices: Labels, soil: Collection[str], attitude_count: int
-) -> dict[str, np.ndarray]:
-    """Which terms make up each part: soil, each soil input by its name, arrival and attitude where there are any.
-
-    [term_count], those of the attitude last.
-    """
-    is_soil = np.array([name in soil for name in inputs])
-    of_soil = (indices[:, ~is_soil] == 0).all(axis=1)
-    alone = (indices > 0).sum(axis=1) == 1
-    groups = {"soil": of_soil}
-    groups |= {name: alone & (indices[:, k] > 0) for k, name in enumerate(inputs) if is_soil[k]}
-    groups |= {} if is_soil.all() else {"arrival": ~of_soil}
-    groups = {name: np.append(group, np.zeros(attitude_count, dtype=bool)) for name, group in groups.items()}
-    if attitude_count:
-        groups["attitude"] = np.arange(len(indices) + attitude_count) >= len(indices)
-    return groups
-
-
-def _regression(terms: Array, y: Array) -> _Regression:
-    """Scatter adds its variance to each squared coefficient; it is taken off. Source: [Searle-1992], section 3.5."""
-    orthogonal, triangle = np.linalg.qr(np.column_stack([np.ones(len(y)), terms]))
-    inverse = np.linalg.inv(triangle)
-    projected = orthogonal.T @ y
-    residuals = y - orthogonal @ projected
-    scatter = float(residuals @ residuals) / (len(y) - len(projected))
-    squares = (inverse @ projected) ** 2 - scatter * np.sum(inverse**2, axis=1)
-    return _Regression(squares[1:], scatter)
-
-
-def _left_out(
-    terms: Array, y: Array, beds: Labels, groups: np.ndarray, found: _Regression, total: float
-) -> list[_Part]:
+def _left_out(terms: Array, y: Array, beds: Labels, groups: np.ndarray, found: Regression, total: float) -> list[_Part]:
     """Shares of groups [group_count, term_count] of terms, with intervals from leaving out each bed in turn.
 
     Source: [Davison-1997], section 2.7 (jackknife), beds as units.
     """
     rows = []
     for number in range(beds.max() + 1):
-        left = _regression(terms[beds != number], y[beds != number])
+        left = regression(terms[beds != number], y[beds != number])
         rows.append(groups @ left.squares / (left.squares.sum() + left.scatter))
     count = len(rows)
     half = confidence.t_quantile(count - 1) * np.sqrt((count - 1) * np.var(rows, axis=0))

@@ -36,6 +36,8 @@ SPEED_CHANGE = "speed_change"
 POSTERIOR, PICTURE = "posterior.json", "posterior.png"
 # Points of the posterior that the file keeps and the picture draws.
 DRAWN = 2000
+# Outcomes of runs of which it is not known what became of them.
+LOST = (TouchdownOutcome.LEFT_SIDEWAYS.value, TouchdownOutcome.TIME_LIMIT.value)
 # What a bounce has of its own, whether known of it or not; all else is the soil and the lander of all bounces.
 OWN = "impact."
 
@@ -209,7 +211,8 @@ class InferredStudy:
             )
         # An input that one bounce leaves out is unknown of that bounce, so it is inferred for all.
         anew = [name for name in self.of_each_bounce if any(name not in one.known for one in seen)]
-        found = analysis.infer(self.model, seen, own=anew, bounds=self.bounds, seed=1)
+        # A lander that is observed has left no bed, and nothing cut it off.
+        found = analysis.infer(self.model, seen, own=anew, bounds=self.bounds, seed=1, missing=LOST)
         return self._content(found, seen)
 
     def _content(self, found: analysis.Posterior, seen: list[analysis.Observation]) -> dict[str, Any]:
@@ -229,6 +232,7 @@ class InferredStudy:
             "effective_count": found.effective_count,
             "is_reliable": found.is_reliable,
             "log_evidence": found.log_evidence,
+            "missing": found.missing,
             "predictive_p_value": surprise,
             "inputs": {
                 name: {

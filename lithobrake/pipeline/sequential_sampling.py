@@ -67,7 +67,7 @@ def _of_journeys(study: Study, folder: StudyFolder, state: LimitState | None) ->
     keys, table = DesignRuns.load(folder, "drawn").keys, JourneyTable.load(folder)
     if stage_keys(study.with_run_count(max(len(table.end), 2)))[RUNS.name] != key:
         return {}
-    met = table.rests.astype(float) if state is None else journeys_met(study, folder, table, state)
+    met = table.told(table.rests) if state is None else journeys_met(study, folder, table, state)
     return dict(zip(keys, met[table.numbers["touchdowns"] > 0.0].tolist(), strict=True))
 
 

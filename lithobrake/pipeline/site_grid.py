@@ -24,7 +24,7 @@ from lithobrake.study import Study
 from lithobrake.study.design_sections import SkyBody
 from lithobrake.study.limit_state_checks import option_states
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_REGION, REFIT_COUNT
-from lithobrake.vocabulary.estimate import LEVEL, Estimate
+from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import TOUCHDOWNS_FILE
 from lithobrake.vocabulary.journey_names import JOURNEY_WORDS
 from lithobrake.vocabulary.limit_state import LimitState
@@ -174,16 +174,7 @@ def all_at_rest(landers: SiteLanders, fitted: Refits) -> Estimate | None:
     if not answered.any():
         return None
     end, refit = landers.end[answered].ravel(), landers.refit[answered].ravel()
-    return share_of_known(end == JourneyEnd.AT_REST, end != UNKNOWN_END, refit, fitted)
-
-
-def share_of_known(
-    met: np.ndarray, known: np.ndarray, refit: np.ndarray, fitted: Refits, level: float = LEVEL
-) -> Estimate:
-    """Share of the landers of known end that have met an event, all [lander_count]; bounds hold for all landers."""
-    everyone = np.ones(len(met), dtype=bool)
-    least, most = (fitted.share(one, everyone, refit, level) for one in (met, met | ~known))
-    return Estimate(float(met.sum() / max(known.sum(), 1)), least.lower, most.upper, level)
+    return fitted.share_of_known(end == JourneyEnd.AT_REST, end != UNKNOWN_END, refit)
 
 
 def site_states(study: Study) -> dict[str, LimitState]:
@@ -195,19 +186,19 @@ def _ends(landers: SiteLanders, cell: int, fitted: Refits, states: Mapping[str, 
     end, refit = landers.end[cell], landers.refit[cell]
     known, rests = end != UNKNOWN_END, end == JourneyEnd.AT_REST
     time, distance = (
-        quantile_of_some(values[cell], rests, MEDIAN, lambda met: fitted.share(met, rests, refit))
+        quantile_of_some(values[cell], rests, MEDIAN, lambda met, of: fitted.share(met, of, refit), ~known)
         for values in (landers.time, landers.distance)
     )
     values = rest_values(end.astype(str), {"time_s": landers.time[cell], "distance": landers.distance[cell]})
     return SiteEnds(
         limit_states={
-            name: share_of_known(limit_state_met(state, values) == 1.0, known, refit, fitted)
+            name: fitted.share_of_known(limit_state_met(state, values) == 1.0, known, refit)
             for name, state in states.items()
         },
-        at_rest=share_of_known(rests, known, refit, fitted),
-        partner=share_of_known(end == JourneyEnd.PARTNER, known, refit, fitted),
-        escaped=share_of_known(end == JourneyEnd.ESCAPED, known, refit, fitted),
-        under_way=share_of_known(end == JourneyEnd.UNDER_WAY, known, refit, fitted),
+        at_rest=fitted.share_of_known(rests, known, refit),
+        partner=fitted.share_of_known(end == JourneyEnd.PARTNER, known, refit),
+        escaped=fitted.share_of_known(end == JourneyEnd.ESCAPED, known, refit),
+        under_way=fitted.share_of_known(end == JourneyEnd.UNDER_WAY, known, refit),
         time_s=time,
         distance_m=distance,
     )
@@ -219,7 +210,8 @@ def _not_worse(landers: SiteLanders, answered: np.ndarray, fitted: Refits) -> tu
         return ()
     # The landers of one refit together, in the same order in all cells, as best_choice compares them draw by draw.
     order = np.argsort(landers.refit[0], kind="stable")
-    rests = (landers.end == JourneyEnd.AT_REST)[:, order].reshape(len(answered), REFIT_COUNT, -1)
+    met = np.where(landers.end == UNKNOWN_END, np.nan, (landers.end == JourneyEnd.AT_REST).astype(float))
+    rests = met[:, order].reshape(len(answered), REFIT_COUNT, -1)
     return best_choice(rests, fitted.bed_count, answered).not_worse
 
 

@@ -107,7 +107,8 @@ class AimOnGround:
     """A delivery option on one ground: bounds over refits on soil, by the number of landers on hard ground."""
 
     settled: Share
-    """landers at rest where the ground holds them"""
+    """share of the landers of known end at rest where the ground holds them, null where none is known; bounds hold
+    whatever becomes of the others"""
     missing: float
     """share of the landers with an unknown outcome"""
     distance_p95: Number | None
@@ -150,12 +151,12 @@ class BestAim:
     all options that cannot be distinguished from it; null on hard ground, and if refits give none"""
     not_worse: tuple[int, ...] | None
     """indices of the other allowed options that cannot be distinguished from the best at the level, all of them
-    together; null in the same cases"""
+    together, whatever becomes of landers with an unknown outcome; null in the same cases"""
     next: int | None
     """place of the second best; null in the same cases"""
     difference: Number | None
-    """its fraction minus that of the second, with bounds over refits; null if there is no second, and in the same
-    cases"""
+    """its fraction minus that of the second, with bounds over refits that hold whatever becomes of landers with an
+    unknown outcome; null if there is no second, and in the same cases"""
 
 
 @dataclass(frozen=True)
@@ -210,6 +211,8 @@ class ComparedAnswer:
     """second less first; null where one of them is"""
     pairs: int
     """pairs of which both runs have an answer"""
+    missing: tuple[float, float]
+    """share of the runs of each study of which it is not known what became of them: all bounds hold whatever did"""
     correlation: float | None
     """of the two runs of a pair; null where an answer does not vary"""
     landings_saved: float | None

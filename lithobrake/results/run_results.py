@@ -63,7 +63,8 @@ class RunResults:
 
 @dataclass(frozen=True)
 class OutputEstimate:
-    """An output over the first touchdowns that have it, in its unit."""
+    """An output over the first touchdowns that have it, in its unit; bounds hold whatever became of those without an
+    outcome, and are null where nothing limits what they may have."""
 
     mean: Number
     """mean"""
@@ -108,7 +109,7 @@ class VarianceParts:
     """Parts of the variance of an output (docs/estimates.md).
 
     null where the runs cannot show it. returns: the return fraction of each run over its flights.
-    Each part lies within [0, 1].
+    Each part lies within [0, 1]; its bounds hold whatever became of runs without an outcome.
     """
 
     soil: Share
@@ -154,7 +155,7 @@ class VarianceParts:
 class CountedShare(Inlined):
     """How many landings, samples or journeys have an outcome, and which share that is.
 
-    Bounds are over beds and impact points not in the study, for landings also over all possible ends of those without
+    Bounds are over beds and impact points not in the study, and over all possible ends of landings and journeys without
     an outcome; of samples over refits of the emulator to resampled beds; of journeys on hard ground from their number.
     """
 
@@ -162,7 +163,7 @@ class CountedShare(Inlined):
     """number with this outcome"""
     share: Share = field(metadata=INLINE)
     """fraction of all; landings without an outcome get the mean of those that left in flight across
-    the edge of the bed"""
+    the edge of the bed, journeys that failed that of the others"""
     upper_limit: float | None = None
     """95 % limit of the share of an outcome that no run had, in samples of an expansion"""
 

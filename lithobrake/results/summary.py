@@ -42,7 +42,8 @@ class Results:
     beds: tuple[BedNumbers, ...]
     site: SiteResults
     ends: Mapping[str, run_results.CountedShare]
-    """how the landers ended: at_rest, escaped, partner, under_way, failed; empty without landers"""
+    """how the landers ended: at_rest, escaped, partner and under_way, which add up to 1 and whose bounds hold whatever
+    journeys came to that failed; and failed, the fraction of all journeys; empty without landers"""
     journeys: int
     """landers that were followed"""
     touchdowns: int

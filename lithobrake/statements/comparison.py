@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
 from lithobrake.statements.labels import bracket, two_digits
 from lithobrake.vocabulary.estimate import Estimate
-from lithobrake.vocabulary.number_words import as_sentence, counted, fixed, intervals, number, out_of
+from lithobrake.vocabulary.number_words import as_sentence, counted, fixed, intervals, number, out_of, percent
 
 PERCENT = 100.0
 
@@ -58,7 +58,15 @@ def sentence(comparison: StudyComparison, name: str) -> str:
     first, second = (f"{bounded(one, factor(answer))} {unit(answer)}".strip() for one in (answer.first, answer.second))
     return as_sentence(
         f"{answer.words}: A {first}, B {second}; B minus A {difference(answer)}: {verdict(answer)} "
-        f"({intervals(comparison.level)}, {comparison.of})"
+        f"({intervals(comparison.level)}, {comparison.of}{unknown(answer)})"
+    )
+
+
+def unknown(answer: ComparedAnswer) -> str:
+    """How many runs have an unknown outcome, behind the number of pairs; nothing where none has."""
+    shares = [f"{percent(share, 1)} of {name}" for share, name in zip(answer.missing, "AB", strict=True) if share > 0.0]
+    return (
+        f"; {' and '.join(shares)} have an unknown outcome, and bounds hold whatever became of them" if shares else ""
     )
 
 

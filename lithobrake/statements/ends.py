@@ -37,6 +37,10 @@ REMEDIES = {
     TouchdownOutcome.TIME_LIMIT: "a longer landing.time_limit",
     FAILED: "the remedy that the reasons of the failed runs name (runs.sqlite)",
 }
+# Smaller shares have a digit after the point.
+FEW = 0.1
+# Ends that stand in sentences of their own.
+SAID_APART = (JourneyEnd.AT_REST, JourneyEnd.FAILED)
 # A program of the user's own has neither bed nor time limit in the study file.
 OF_A_PROGRAM = "a program that returns clear or captured for every touchdown"
 
@@ -132,17 +136,24 @@ def unknown_outcome(share: float, digits: int = 0) -> str:
     return f"{percent(share, digits)} have an unknown outcome"
 
 
+def covered(share: float) -> str:
+    """Which fraction has an unknown outcome, where the interval covers all that they may have done."""
+    return f"{unknown_outcome(share, 0 if share >= FEW else 1)}, and the interval holds whatever became of them"
+
+
 def lost(outcomes: Mapping[str, int]) -> str:
     """The kinds of landings without an outcome with their counts."""
     return ", ".join(f"{count} {RUN_WORDS[name]}" for name, count in outcomes.items())
 
 
-def if_missing(who: str, kinds: str, ends: tuple[float, float], digits: int, more: str = "") -> str:
-    """Between which shares the return fraction lies, whatever became of those without an outcome."""
+def if_missing(
+    who: str, kinds: str, ends: tuple[float, float], digits: int, more: str = "", what: str = "return"
+) -> str:  # fmt: skip
+    """Between which shares a fraction lies, whatever became of those without an outcome; what: these do or do not."""
     low, high = (percent(end, digits) for end in ends)
+    fraction = "return fraction" if what == "return" else "fraction at rest"
     return (
-        f"{who} have no outcome ({kinds}): the return fraction is {low} if none of these return and {high} if all "
-        f"do{more}."
+        f"{who} have no outcome ({kinds}): the {fraction} is {low} if none of these {what} and {high} if all do{more}."
     )
 
 
@@ -160,9 +171,9 @@ def missing_warning(count: int, total: int, outcomes: Mapping[str, int], *, has_
     """What missing landings do to the numbers of a study, and how to avoid them."""
     remedies = [REMEDIES[name] for name in outcomes] if has_soil else [OF_A_PROGRAM]
     return (
-        f"{out_of(count, total, 'landings')} ({percent(count / total)}) have no outcome ({lost(outcomes)}): medians, "
-        f"quantiles, variance shares and the emulator describe only the other {total - count}; to avoid this: "
-        f"{', '.join(remedies)}"
+        f"{out_of(count, total, 'landings')} ({percent(count / total)}) have no outcome ({lost(outcomes)}): intervals "
+        f"hold whatever became of them, but medians, parts of the variance and the emulator describe only the other "
+        f"{total - count}; to avoid this: {', '.join(remedies)}"
     )
 
 
@@ -241,7 +252,19 @@ def journey_ends(scope: Scope, results: "Results") -> list[str]:
     rests = results.ends[JourneyEnd.AT_REST].share
     main = rest_over(results, scope.journey_time, scope.touchdowns)
     said = f"{main} ({journey_counts(results)}).{_others(results)}{_all_alike(rests)}"
-    return [said] if rests.why_missing is None else [said, rests.why_missing]
+    why = [] if rests.why_missing is None else [rests.why_missing]
+    return [said, *missing_journeys(results), *why]
+
+
+def missing_journeys(results: "Results") -> list[str]:
+    """What journeys of unknown end could change; nothing where every end is known."""
+    failed, rests = results.ends[JourneyEnd.FAILED].count, results.ends[JourneyEnd.AT_REST]
+    if not failed:
+        return []
+    ends = rests.count / results.journeys, (rests.count + failed) / results.journeys
+    more = "; the intervals hold whatever became of them" if rests.share.lower is not None else ""
+    who, kinds = out_of(failed, results.journeys, "journeys"), "a landing or flight failed"
+    return [if_missing(who, kinds, ends, interval_digits(*ends), more, "come to rest")]
 
 
 def _all_alike(rests: Estimate) -> str:
@@ -274,7 +297,7 @@ def journeys_at_rest(count: int, total: int) -> str:
 def _others(results: "Results") -> str:
     """The shares of the other ends that occurred, with the body on which landers rest."""
     words = end_words(results.site)
-    others = {name: one for name, one in results.ends.items() if name != JourneyEnd.AT_REST and one.count}
+    others = {name: one for name, one in results.ends.items() if name not in SAID_APART and one.count}
     listed = [f"{with_interval(one.share)} {words[name]}" for name, one in others.items()]
     return f" Other ends: {', '.join(listed)}." if listed else ""
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lithobrake.statements.ends import unknown_outcome
+from lithobrake.statements.ends import covered, unknown_outcome
 from lithobrake.statements.labels import bracket, two_digits
 from lithobrake.vocabulary.number_words import (
     at_level,
@@ -56,7 +56,7 @@ def journey_state(name: str, found: "LimitStateResult") -> str:
     if found.if_aimed is not None:
         said[0] += f"; with the mean on the aim point it would be {with_interval(found.if_aimed)}"
     if runs.missing > 0.0:
-        said.append(f"{unknown_outcome(runs.missing)}, and the interval covers all their possible ends")
+        said.append(covered(runs.missing))
     if found.grounds:
         kinds = ", ".join(f"{kind} {with_interval(share)}" for kind, share in found.grounds.items())
         said.append(f"By kind of ground: {kinds}")
@@ -85,6 +85,8 @@ def limit_state(name: str, found: "LimitStateResult") -> str:
             said += f"; {found.runs.from_} cannot resolve probabilities below {rare_percent(found.tail_limit)}"
     else:
         said += f", from {found.runs.from_}"
+    if found.runs.missing > 0.0:
+        said += f"; {covered(found.runs.missing)}"
     made = _correlated(found)
     none = "No input is significant" if found.inputs else "Its correlated inputs are unknown"
     return f"{said}. {'It is correlated with ' + ', '.join(made) if made else none}."
@@ -178,7 +180,7 @@ def _of_best(table: "AimResults") -> str:
         far, late = part.distance_p95.value, part.time_p95.value
         said += f", {percent(FAR)} of these within {number(far)} m and {duration(late)}"
     if part.missing >= 0.005:
-        said += f"; {unknown_outcome(part.missing)}{_rivals(table, best.aim)}"
+        said += f"; {unknown_outcome(part.missing) if best.own is None else covered(part.missing)}"
     return said
 
 
@@ -191,19 +193,6 @@ def _alike(table: "AimResults", places: Sequence[int], count: int, within: str) 
         return f"One of {count} delivery options{within} is better than every other, {surely}"
     named = f": {'; '.join(option(table, place) for place in sorted(places))}" if len(places) <= NAMED else ""
     return f"{len(places)} of {count} delivery options{within} cannot be distinguished from the best, {surely}{named}"
-
-
-def _rivals(table: "AimResults", best: int) -> str:
-    """How many other options would be better if all landers of unknown outcome were at rest there."""
-    least = _compared(table, table.aims[best].soil).value
-    others = [(_compared(table, one.soil), one.soil.missing) for one in table.aims if one.soil.allowed]
-    # Of an option of which no end is known all may.
-    count = sum((share.value if share.is_known else 0.0) + missing > least for share, missing in others) - 1
-    return (
-        f"; if all of these {_verb(table, 'came', 'met')}, up to {count} other options could be better"
-        if count > 0
-        else ""
-    )
 
 
 def option(table: "AimResults", place: int) -> str:

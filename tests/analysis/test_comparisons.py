@@ -7,7 +7,7 @@ import pytest
 from scipy.special import ndtri
 
 from lithobrake.analysis import best_choice, quantile_difference, quantile_within, share_difference
-from lithobrake.analysis.comparisons import pair_correlation
+from lithobrake.analysis.paired_difference import pair_correlation
 
 BEDS = 24
 

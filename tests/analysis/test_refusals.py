@@ -53,7 +53,7 @@ REFUSED: dict[str, tuple[Callable[[], object], str]] = {
     "a bed of NaN": (lambda: analysis.mean_estimate([1.0, 2.0, 3.0], [0.0, NAN, 1.0]), "bed hold NaN"),
     "more met than drawn": (lambda: analysis.refit_interval([5, 9], [6, 6], 4), "counts must lie between 0"),
     "refits of NaN": (lambda: analysis.refit_interval([5, 4], [6, NAN], 4), "counts must lie between 0"),
-    "a choice of NaN": (lambda: analysis.best_choice(np.full((2, 3, 3), NAN), 3, [True, True]), "must be finite"),
+    "an infinite choice": (lambda: analysis.best_choice(np.full((2, 3, 3), np.inf), 3, [True, True]), "must be finite"),
     "a third choice": (lambda: analysis.best_choice(np.ones((2, 3, 3)), 3, [True] * 3), "whether each choice"),
     "beds of NaN": (lambda: analysis.refit_interval([1, 2], [5, 5], NAN), "bed_count is nan"),  # type: ignore[arg-type]
     "squares that overflow": (lambda: analysis.mean_estimate([1e200, 2e200], [0, 1]), "2 infinite values or beyond"),

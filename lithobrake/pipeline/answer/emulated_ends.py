@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.analysis import quantile_within, refit_interval
-from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
+from lithobrake.analysis.paired_difference import difference_bounds
 from lithobrake.analysis.unseen_event import RunCounts, limit_of_runs, runs_by_bed
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import Rows
@@ -83,11 +83,11 @@ def emulated_ends(job: Job, table: JourneyTable, plain: Shares) -> tuple[Emulate
 
 def _fresh_shares(study: Study, table: JourneyTable, fresh: EmulatedTable) -> dict[str, CountedShare]:
     """Shares of the landers of known end, with bounds that hold whatever becomes of the others."""
-    totals, known = np.bincount(fresh.refit, minlength=REFIT_COUNT), fresh.end != UNKNOWN_END
-    why, fitted = why_no_interval(study), runs_by_bed(table.bed)
-    found = {}
-    for end in (*EMULATED_ENDS, JourneyEnd.FAILED.value):
-        met = fresh.end == end
+    totals, why = np.bincount(fresh.refit, minlength=REFIT_COUNT), why_no_interval(study)
+    fitted, failed, found = runs_by_bed(table.bed), JourneyEnd.FAILED.value, {}
+    for end in (*EMULATED_ENDS, failed):
+        # A lander whose landing failed has an unknown end, too.
+        met, known = fresh.end == end, ~np.isin(fresh.end, [UNKNOWN_END] if end == failed else [UNKNOWN_END, failed])
         share, count = float(met.sum() / max(known.sum(), 1)), int(met.sum())
         if why is not None or totals.min() < 2:
             found[end] = CountedShare(count, Estimate(share, None, None, why_missing=why))
@@ -117,7 +117,8 @@ def _narrowed(
     """Shares with what the emulator predicts of each journey taken off, where that narrows the share at rest."""
     rests, met = JourneyEnd.AT_REST.value, [end for end, one in plain.items() if one.count]
     before = plain[rests].share.half_width
-    if before is None or len(met) < 2 or rests not in met:
+    # What is predicted narrows nothing where an end is not known.
+    if before is None or len(met) < 2 or rests not in met or table.unknown.any():
         return None, plain
     if len(own.end) != COPIES * len(table.end):
         return None, plain
@@ -196,6 +197,16 @@ class Refits:
         found = refit_interval(counts[told], totals[told], self.bed_count, self.run_count, level)
         return replace(found, value=share)
 
+    def share_of_known(self, met: np.ndarray, known: np.ndarray, refit: np.ndarray, level: float = LEVEL) -> Estimate:
+        """Share of the landers of known end that have met an event; bounds hold whatever becomes of the others.
+
+        met, known, refit: all [lander_count]. Of no known end the share is not known.
+        """
+        everyone = np.ones(len(met), dtype=bool)
+        least, most = (self.share(one, everyone, refit, level) for one in (met & known, met | ~known))
+        share = float((met & known).sum() / known.sum()) if known.any() else math.nan
+        return Estimate(share, least.lower, most.upper, level)
+
     def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
         """The same with bounds of an outcome that no run had from 0 to what so many runs can say of it."""
         limit = limit_of_runs(self.run_count, self.bed_count)
@@ -207,19 +218,32 @@ class Refits:
 
 
 def quantile_of_some(
-    values: np.ndarray, which: np.ndarray, level: float, share: Callable[[np.ndarray], Estimate]
+    values: np.ndarray,
+    which: np.ndarray,
+    level: float,
+    share: Callable[[np.ndarray, np.ndarray], Estimate],
+    unknown: np.ndarray,
 ) -> Estimate | None:
     """A quantile of the values of some landers, both [lander_count], with its interval; None where there are none.
 
-    share: that of those of them which have met an event [lander_count], with its interval, if it has one.
+    share: that of some landers (its second argument) which have met an event (its first), both [lander_count], with its
+    interval, if it has one. unknown [lander_count]: landers that may be of these, with a value below or above all.
     """
     if not which.any():
         return None
-    point = quantile_within(values[which], level, (level, level))[0]
-    below = share(which & (values <= point))
-    if below.bounds is None:
-        return Estimate(quantile_within(values[which], level, (0.0, 1.0))[0], None, None)
-    value, *bounds = quantile_within(values[which], level, below.bounds)
+    own, of = values[which], which | unknown
+    point = quantile_within(own, level, (level, level))[0]
+    part = float(unknown.sum() / of.sum())
+    # Unknown landers lie below all values for the lower bound, above them for the upper one.
+    below = share(which & (values <= point) | unknown, of), share(which & (values <= point), of)
+    if below[0].bounds is None or below[1].bounds is None:
+        return Estimate(point, None, None)
+    if not part:
+        levels = below[0].bounds
+    else:
+        least, most = level - below[0].value + below[0].bounds[0], level - below[1].value + below[1].bounds[1]
+        levels = max((least - part) / (1.0 - part), 0.0), min(most / (1.0 - part), 1.0)
+    value, *bounds = quantile_within(own, level, levels)
     # Few landers give no interval of a tail.
     lower, upper = (end if math.isfinite(end) else None for end in bounds)
     return Estimate(value, lower, upper)

@@ -5,7 +5,7 @@ import numpy as np
 from lithobrake.analysis.ground_spread import median_over_grounds, share_over_grounds
 from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.smooth_curve import curve_sizes, median_curve, share_curve
-from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
+from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share, face_shares
 from lithobrake.pipeline.answer.run_answers import is_on_one_ground, why_no_interval
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.results.ground_results import FinerGround, GroundBed, GroundCurve, GroundKindResults, OverGrounds
@@ -25,14 +25,15 @@ def over_grounds(design: DrawnDesign, table: JourneyTable) -> OverGrounds | None
     rests = table.rests
     if not is_on_one_ground(design.study) or not len(table.end):
         return None
-    why, faces = why_no_interval(design.study), table.face[rests]
+    why, lost = why_no_interval(design.study), table.unknown
+    asked = table.taken(np.flatnonzero(rests | lost))
     return OverGrounds(
-        at_rest=share_over_grounds(rests.astype(float), table.bed, why=why),
-        time_s=median_over_grounds(table.of_rest("time_s"), table.bed, why=why),
-        distance_m=median_over_grounds(table.of_rest("distance"), table.bed, why=why),
+        at_rest=share_over_grounds(table.told(rests), table.bed, why=why),
+        time_s=median_over_grounds(table.of_rest("time_s"), table.bed, why=why, missing=lost),
+        distance_m=median_over_grounds(table.of_rest("distance"), table.bed, why=why, missing=lost),
         faces={
-            str(face): share_over_grounds((faces == face).astype(float), table.bed[rests], why=why)
-            for face in (np.unique(faces) if table.has_sides else ())
+            str(face): share_over_grounds(asked.told(asked.face == face), asked.bed, why=why)
+            for face in (np.unique(table.face[rests]) if table.has_sides else ())
         },
     )
 
@@ -52,9 +53,10 @@ def finer_ground(design: DrawnDesign, table: JourneyTable) -> FinerGround | None
 def _conditional(here: JourneyTable, why: str | None) -> tuple[CountedShare, Estimate, Estimate]:
     """Of journeys on some of the grounds: fraction at rest, median time to rest and distance of those at rest."""
     time, distance = (
-        quantile_estimate(here.of_rest(name), here.bed, MEDIAN, why=why) for name in ("time_s", "distance")
+        quantile_estimate(here.of_rest(name), here.bed, MEDIAN, why=why, missing=here.unknown)
+        for name in ("time_s", "distance")
     )
-    return end_share(here.rests, here.bed, why), time, distance
+    return end_share(here.told(here.rests), here.bed, why), time, distance
 
 
 def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None:
@@ -69,11 +71,14 @@ def ground_curve(design: DrawnDesign, table: JourneyTable) -> GroundCurve | None
     axis = np.char.lstrip(table.face.astype(str), "+-")
     names = np.unique(axis[rests]) if table.has_sides else ()
     # The sizes of the curve are those of all beds, also where nobody rests on some.
-    curves = {str(name): share_curve(np.where(rests, axis == name, np.nan), size, table.bed, seed) for name in names}
+    curves = {
+        str(name): share_curve(np.where(rests, axis == name, np.nan), size, table.bed, seed, table.unknown)
+        for name in names
+    }
     return GroundCurve(
         grain_size_m=tuple(curve_sizes(size).tolist()),
-        at_rest=tuple(share_curve(rests.astype(float), size, table.bed, seed)),
-        time_s=tuple(median_curve(table.of_rest("time_s"), size, table.bed, seed)),
+        at_rest=tuple(share_curve(table.told(rests), size, table.bed, seed, table.unknown)),
+        time_s=tuple(median_curve(table.of_rest("time_s"), size, table.bed, seed, table.unknown)),
         axes={name: tuple(one) for name, one in curves.items()},
         beds=tuple(_bed(design.grounds.each[bed], table.taken(table.bed == bed)) for bed in np.unique(table.bed)),
     )
@@ -83,7 +88,8 @@ def _bed(ground: BedGround, table: JourneyTable) -> GroundBed:
     """The journeys on a bed of this ground."""
     rests = table.rests
     time = float(np.median(table.numbers["time_s"][rests])) if rests.any() else None
-    return GroundBed(ground.kind, ground.size, len(rests), float(rests.mean()), time)
+    known = rests if table.unknown.all() else rests[~table.unknown]
+    return GroundBed(ground.kind, ground.size, len(rests), float(known.mean()), time)
 
 
 def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKindResults]:
@@ -97,7 +103,7 @@ def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKi
         here = table.taken(np.flatnonzero(own))
         if not len(here.end):
             continue
-        faces, (at_rest, time, distance) = here.face[here.rests], _conditional(here, why)
+        at_rest, time, distance = _conditional(here, why)
         found[name] = GroundKindResults(
             weight=weights[name],
             beds=len(np.unique(here.bed)),
@@ -106,9 +112,6 @@ def kind_results(design: DrawnDesign, table: JourneyTable) -> dict[str, GroundKi
             at_rest=at_rest,
             time_s=time,
             distance_m=distance,
-            faces={
-                str(face): end_share(faces == face, here.bed[here.rests], why)
-                for face in (np.unique(faces) if here.has_sides else ())
-            },
+            faces=face_shares(here, why),
         )
     return found

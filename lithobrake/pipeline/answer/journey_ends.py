@@ -1,12 +1,13 @@
 """How the journeys of a study ended, over beds: shares, times, places, attitudes, soils and sky."""
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from lithobrake.analysis import highest_density, quantile_estimate, share_estimate
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline.answer.run_answers import SHARES, rest_regions, why_no_interval
+from lithobrake.pipeline.answer.run_answers import KNOWN, SHARES, rest_regions, unknown_runs, why_no_interval
 from lithobrake.pipeline.design.lander_attitude import seen, tells_attitude
 from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.job import Job
@@ -71,6 +72,16 @@ class JourneyTable:
         at_rest: np.ndarray = self.end == JourneyEnd.AT_REST.value
         return at_rest
 
+    @property
+    def unknown(self) -> np.ndarray:
+        """Of which journeys the end is not known: a landing or flight of them failed."""
+        failed: np.ndarray = self.end == JourneyEnd.FAILED.value
+        return failed
+
+    def told(self, met: np.ndarray) -> np.ndarray:
+        """Whether each journey has met an event: 1, 0, or NaN where its end is not known [journey_count]."""
+        return np.where(self.unknown, np.nan, met.astype(float))
+
     def of_rest(self, name: str) -> np.ndarray:
         """A number of each lander at rest, NaN of the others [journey_count]."""
         values: np.ndarray = np.where(self.rests, self.numbers[name], np.nan)
@@ -84,9 +95,11 @@ class JourneyTable:
 
 
 def end_shares(study: Study, table: JourneyTable) -> dict[str, CountedShare]:
-    """The share of each end; they add up to 1."""
+    """The share of each end; those but failed add up to 1, and their bounds hold whatever failed journeys came to."""
     why = why_no_interval(study)
-    return {end.value: end_share(table.end == end.value, table.bed, why) for end in JourneyEnd}
+    failed = JourneyEnd.FAILED
+    met = {end: table.end == end.value for end in JourneyEnd}
+    return {end.value: end_share(one if end is failed else table.told(one), table.bed, why) for end, one in met.items()}
 
 
 def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
@@ -97,23 +110,30 @@ def journey_rest(study: Study, table: JourneyTable) -> JourneyRest:
         values = table.of_rest(name)
         counts = name == "contacts"
         return RestQuantiles(
-            *(quantile_estimate(values, table.bed, level, counts=counts, why=why) for level in (MEDIAN, HIGH))
+            *(
+                quantile_estimate(values, table.bed, level, counts=counts, why=why, missing=table.unknown)
+                for level in (MEDIAN, HIGH)
+            )
         )
 
     density = highest_density(table.position[rests], SHARES)
-    faces = table.face[rests]
     return JourneyRest(
         of=journeys_at_rest(int(rests.sum()), len(rests)),
         time_s=quantiles("time_s"),
         contacts=quantiles("contacts"),
         distance_m=quantiles("distance"),
         regions=rest_regions(density),
-        faces={
-            str(face): end_share(faces == face, table.bed[rests], why) for face in np.unique(faces) if table.has_sides
-        },
+        faces=face_shares(table, why),
         tilt_deg=quantiles("tilt_deg") if table.has_sides else None,
         why_no_regions=density.why,
     )
+
+
+def face_shares(table: JourneyTable, why: str | None) -> dict[str, CountedShare]:
+    """The share of the landers at rest on each side, by name; one of unknown end may rest on any, or nowhere."""
+    asked = table.taken(np.flatnonzero(table.rests | table.unknown))
+    names = np.unique(table.face[table.rests]) if table.has_sides else ()
+    return {str(name): end_share(asked.told(asked.face == name), asked.bed, why) for name in names}
 
 
 def end_share(
@@ -121,10 +141,13 @@ def end_share(
 ) -> CountedShare:  # fmt: skip
     """The share of the journeys that have met an event [journey_count], with its interval over beds.
 
-    explained: what something else predicts of each, of mean 0 over all journeys; taken off. why: there is no interval.
+    met: NaN where that is not known. explained: what something else predicts of each, of mean 0 over all journeys;
+    taken off. why: there is no interval.
     """
+    if not np.isfinite(met.astype(float)).any():
+        return CountedShare(0, Estimate(math.nan, None, None, why_missing=why or "no end is known"))
     found = share_estimate(met.astype(float), bed, explained=explained, why=why)
-    return CountedShare(int(met.sum()), found.share)
+    return CountedShare(int(np.nansum(met)), found.share)
 
 
 def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
@@ -133,7 +156,7 @@ def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
     returns: share of the flights of each run that return, [run_count], NaN where that is not known.
     """
     side, bed, why = _sides(study, runs), runs.inputs["bed"], why_no_interval(study)
-    ratio = runs.output("speed_out") / runs.inputs[IMPACT_SPEED]
+    ratio, lost = runs.output("speed_out") / runs.inputs[IMPACT_SPEED], unknown_runs(runs)
     found = {}
     for name in _named(side):
         own = side == name
@@ -141,7 +164,7 @@ def first_sides(study: Study, runs: DesignRuns, returns: np.ndarray) -> Sides:
         found[name] = SideResults(
             words=side_words(study.lander, name),
             landings=int(own.sum()),
-            speed_ratio=quantile_estimate(ratio[own], bed[own], MEDIAN, why=why),
+            speed_ratio=quantile_estimate(ratio[own], bed[own], MEDIAN, why=why, missing=lost[own]),
             returns=CountedShare(int((returns[own] == 1.0).sum()), share),
         )
     return found
@@ -151,14 +174,15 @@ def with_journeys(study: Study, sides: Sides, runs: DesignRuns, touchdowns: Desi
     """The same with what the journeys of these first touchdowns came to, and what all their touchdowns did."""
     side, every, why = _sides(study, runs), _sides(study, touchdowns), why_no_interval(study)
     captured = np.array(touchdowns.outcomes) == TouchdownOutcome.CAPTURED
+    captured = np.where(unknown_runs(touchdowns), np.nan, captured.astype(float))
     found = {}
     for name, one in sides.items():
         own, those = side == name, every == name
         time = table.of_rest("time_s")[own]
         found[name] = replace(
             one,
-            at_rest=end_share(table.rests[own], table.bed[own], why),
-            time_s=quantile_estimate(time, table.bed[own], MEDIAN, why=why),
+            at_rest=end_share(table.told(table.rests)[own], table.bed[own], why),
+            time_s=quantile_estimate(time, table.bed[own], MEDIAN, why=why, missing=table.unknown[own]),
             touchdowns=int(those.sum()),
             rests=end_share(captured[those], touchdowns.inputs["bed"][those], why),
         )
@@ -186,16 +210,19 @@ def soil_shares(job: Job, table: JourneyTable) -> dict[str, SoilResults]:
     # Regions are of the body of the site, and so is the ground elsewhere.
     rows = [row for row in rows if row["body"] == job.site.ground_names[0]]
     journey, soil = np.array([int(row["journey"]) for row in rows]), np.array([row["soil"] for row in rows])
-    captured = np.array([row["outcome"] for row in rows]) == TouchdownOutcome.CAPTURED
+    outcome = np.array([row["outcome"] for row in rows])
+    captured = np.where(np.isin(outcome, KNOWN), (outcome == TouchdownOutcome.CAPTURED).astype(float), np.nan)
     soils, why, found = Soils(job.site), why_no_interval(job.study), {}
     for name, area in soils.area_shares().items():
         there = soil == name
-        rests = np.isin(np.arange(len(table.end)), journey[there & captured])
+        rests = np.isin(np.arange(len(table.end)), journey[there & (captured == 1.0)])
         found[name] = SoilResults(
             area_share=area,
             touchdowns=int(there.sum()),
-            rests=end_share(captured[there], table.bed[journey[there]], why) if there.any() else None,
-            at_rest=end_share(rests, table.bed, why),
+            rests=end_share(captured[there], table.bed[journey[there]], why)
+            if np.isfinite(captured[there]).any()
+            else None,
+            at_rest=end_share(table.told(rests), table.bed, why),
             outlines=soils.outlines(name),
         )
     return found
@@ -213,10 +240,19 @@ def sky_results(study: Study, folder: StudyFolder, table: JourneyTable) -> dict[
 
 def _of(study: Study, rows: list[dict[str, str]], table: JourneyTable) -> SkyResults:
     """The results of one body."""
-    why, bed = why_no_interval(study), table.bed[[int(row["journey"]) for row in rows]]
+    why, own = why_no_interval(study), [int(row["journey"]) for row in rows]
+    # A lander of unknown end may rest where it sees the body at all times, or never.
+    bed, open_ = np.concatenate([table.bed[own], table.bed[table.unknown]]), np.full(table.unknown.sum(), np.nan)
+    lost = np.arange(len(bed)) >= len(own)
 
     def column(name: str) -> np.ndarray:
-        return np.array([float(row[name] or "nan") for row in rows])
+        return np.concatenate([[float(row[name] or "nan") for row in rows], open_])
+
+    def quantile(values: np.ndarray, level: float = MEDIAN) -> Estimate:
+        return quantile_estimate(values, bed, level, why=why, missing=lost)
+
+    def never(values: np.ndarray) -> CountedShare:
+        return end_share(np.where(lost, np.nan, values == 0.0), bed, why)
 
     def probability(values: np.ndarray) -> Estimate:
         return share_estimate(values, bed, why=why).share
@@ -224,12 +260,12 @@ def _of(study: Study, rows: list[dict[str, str]], table: JourneyTable) -> SkyRes
     seen = column("day_fraction")
     sides = {side: column(f"side_{side}") for side in SIDES if rows[0][f"side_{side}"]}
     return SkyResults(
-        day_fraction=quantile_estimate(seen, bed, MEDIAN, why=why),
-        day_fraction_q05=quantile_estimate(seen, bed, LOW, why=why),
-        least_day_fraction=quantile_estimate(column("least_day_fraction"), bed, MEDIAN, why=why),
+        day_fraction=quantile(seen),
+        day_fraction_q05=quantile(seen, LOW),
+        least_day_fraction=quantile(column("least_day_fraction")),
         probability=probability(seen),
-        never=end_share(seen == 0.0, bed, why),
-        sides={side: quantile_estimate(values, bed, MEDIAN, why=why) for side, values in sides.items()},
+        never=never(seen),
+        sides={side: quantile(values) for side, values in sides.items()},
         side_probabilities={side: probability(values) for side, values in sides.items()},
-        dark_sides={side: end_share(values == 0.0, bed, why) for side, values in sides.items()},
+        dark_sides={side: never(values) for side, values in sides.items()},
     )

@@ -1,6 +1,7 @@
 """How far the landers at rest lie from the aim point in the mean, and where the aim should be moved."""
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -72,11 +73,15 @@ def mean_miss(job: Job, table: JourneyTable) -> MeanMiss | None:
     places = rest_offsets(job, table)
     if places is None:
         return None
-    why, is_one = why_no_interval(job.study), is_on_one_ground(job.study)
-    east, north = (mean_over_beds(one, table.bed, why=why) for one in places.T)
-    on_one = [mean_over_grounds(one, table.bed, why=why) if is_one else None for one in places.T]
+    is_one, farthest = is_on_one_ground(job.study), math.pi * job.site.aim_radius
+    # A lander of unknown end may rest anywhere on the body.
+    how: dict[str, Any] = {
+        "bed": table.bed, "why": why_no_interval(job.study), "missing": table.unknown, "limits": (-farthest, farthest),
+    }  # fmt: skip
+    east, north = (mean_over_beds(one, **how) for one in places.T)
+    on_one = [mean_over_grounds(one, **how) if is_one else None for one in places.T]
     mean = mean_over_grounds if is_one else mean_over_beds
-    both = [mean(one, table.bed, why=why, level=LEVEL_OF_EACH).bounds for one in places.T]
+    both = [mean(one, **how, level=LEVEL_OF_EACH).bounds for one in places.T]
     latitude, longitude = _place(job.site, -east.value, -north.value)
     mean_latitude, mean_longitude = _place(job.site, east.value, north.value)
     return MeanMiss(

@@ -1,7 +1,7 @@
 """The delivery options of a study: what becomes of the landers of each on both grounds, and the best of them."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
 from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some
-from lithobrake.pipeline.answer.journey_limit_states import rest_values
+from lithobrake.pipeline.answer.journey_limit_states import UNKNOWN, rest_values
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim
 from lithobrake.statements.limits import FAR, options
@@ -24,7 +24,7 @@ from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.file_names import AIM_FILE
 from lithobrake.vocabulary.limit_state import LimitState
-from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, REST_NUMBERS, UNKNOWN_END
+from lithobrake.vocabulary.quantities import AIM_COLUMNS, PURE, REST_NUMBERS
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,14 @@ class OptionLanders:
         return np.broadcast_to(found, self.status.shape)
 
     @property
+    def unknown(self) -> np.ndarray:
+        """Of which it is not known how they ended."""
+        return np.isin(self.status.astype(str), UNKNOWN)
+
+    @property
     def compared(self) -> np.ndarray:
-        """Which do what most landers of the best option do; one of unknown end does not."""
-        return self.settled if self.best is None else self.met(self.best) == 1.0
+        """Which do what most landers of the best option do: 1, 0, or NaN where that is not known."""
+        return np.where(self.unknown, np.nan, self.settled) if self.best is None else self.met(self.best)
 
 
 def aim_results(study: Study, folder: StudyFolder, fitted: Refits) -> AimResults | None:
@@ -111,28 +116,30 @@ def _on_ground(
 
 def _of_aim(landers: OptionLanders, row: int, ground: str, fitted: Refits) -> AimOnGround:
     """Shares and 95 % quantiles of one aim, with their intervals where there are any; not yet whether it is allowed."""
-    settled, refit = landers.settled[row], landers.refit[row]
+    settled, unknown, refit = landers.settled[row], landers.unknown[row], landers.refit[row]
+
+    def share(met: np.ndarray, of: np.ndarray) -> Estimate:
+        return _share(met, of, refit, ground, fitted)
 
     def far(values: np.ndarray) -> Estimate | None:
         """Where most of those that settle lie, or when."""
-        return quantile_of_some(values, settled, FAR, lambda met: _share(met, settled, refit, ground, fitted))
+        return quantile_of_some(values, settled, FAR, share, unknown)
 
     return AimOnGround(
-        settled=_share(settled, np.ones(len(settled), dtype=bool), refit, ground, fitted),
-        missing=float((landers.status[row] == UNKNOWN_END).mean()),
+        settled=_of_known(np.where(unknown, np.nan, settled), share),
+        missing=float(unknown.mean()),
         distance_p95=far(landers.numbers["distance"][row]),
         time_p95=far(landers.numbers["time_s"][row]),
         allowed=False,
-        limit_states={name: _of_state(landers, row, name, ground, fitted) for name in landers.states},
+        limit_states={name: _of_known(landers.met(name)[row], share) for name in landers.states},
     )
 
 
-def _of_state(landers: OptionLanders, row: int, name: str, ground: str, fitted: Refits) -> Estimate:
-    """Share of the landers of known end at one aim that meet a limit state, NaN where no end is known; bounds hold
-    whatever the others do."""
-    met, refit = landers.met(name)[row], landers.refit[row]
+def _of_known(met: np.ndarray, share: Callable[[np.ndarray, np.ndarray], Estimate]) -> Estimate:
+    """Share of the landers of known end that have met an event [lander_count: 1, 0 or NaN], NaN where no end is known;
+    bounds hold whatever the others do. share: of landers which have met an event among some."""
     everyone, known = np.ones(len(met), dtype=bool), np.isfinite(met)
-    least, most = (_share(np.where(known, met, end) == 1.0, everyone, refit, ground, fitted) for end in (0.0, 1.0))
+    least, most = (share(np.where(known, met, end) == 1.0, everyone) for end in (0.0, 1.0))
     return Estimate(float(met[known].mean()) if known.any() else math.nan, least.lower, most.upper)
 
 
@@ -147,7 +154,9 @@ def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitt
 def _keeps(limits: list[AimLimit], aim: dict[str, float], part: AimOnGround) -> bool:
     """Whether an aim and what comes of it keep all limits."""
     known: dict[str, float | None] = {name.partition(".")[2]: value for name, value in aim.items()}
-    known |= {AT_REST: part.settled.value, "missing": part.missing}
+    # Of at rest counts what is sure.
+    certain = 0.0 if not part.settled.is_known else part.settled.value * (1.0 - part.missing)
+    known |= {AT_REST: certain, "missing": part.missing}
     far = {"distance_p95": part.distance_p95, "time_p95": part.time_p95}
     known |= {name: None if one is None else one.value for name, one in far.items()}
     known |= {name: one.value if one.is_known else None for name, one in part.limit_states.items()}
@@ -164,7 +173,7 @@ def _best(
     """
     allowed = [part.allowed for part in parts]
     compared = landers.compared
-    shares = np.where(allowed, compared.mean(axis=1), -1.0)
+    shares = np.where(allowed, (compared == 1.0).mean(axis=1), -1.0)
     if shares.max() <= 0.0:
         return parts, None
     if fitted is None:

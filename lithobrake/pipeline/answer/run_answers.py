@@ -101,6 +101,12 @@ def is_on_one_ground(study: Study) -> bool:
     return study.ground is not None and study.ground.unknown != "patchy"
 
 
+def unknown_runs(runs: DesignRuns) -> np.ndarray:
+    """Of which runs it is not known what became of them [run_count]."""
+    lost: np.ndarray = ~np.isin(runs.outcomes, KNOWN)
+    return lost
+
+
 def missing_landings(outcomes: Mapping[str, int]) -> MissingLandings:
     """How many of the landings have no outcome, by how they ended; outcomes: landings by outcome."""
     lost = {str(name): outcomes[name] for name in LOST if outcomes.get(name)}

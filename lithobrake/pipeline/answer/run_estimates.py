@@ -2,16 +2,19 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lithobrake import analysis
+from lithobrake.analysis.missing_runs import Limits
 from lithobrake.chaos import Empirical
 from lithobrake.pipeline.answer import run_answers
 from lithobrake.pipeline.answer.correlated_inputs import independent_columns
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, first_sides
+from lithobrake.pipeline.answer.output_limits import output_limits
+from lithobrake.pipeline.answer.run_answers import described, unknown_runs
 from lithobrake.pipeline.design.drawn_design import GRAIN, DrawnDesign
 from lithobrake.pipeline.design.lander_attitude import independent_terms
 from lithobrake.pipeline.design.soils import Soils
@@ -105,7 +108,14 @@ def flight_estimates(impacts: RunImpacts, runs: DesignRuns, why: str | None) -> 
         points = np.quantile(values, QUANTILES, method="hazen").tolist()
         ends: list[tuple[float, float] | None] = [None] * len(QUANTILES)
         if why is None and several:
-            found = analysis.quantile_estimates(values, bed, QUANTILES)
+            # A run without an outcome may have any flights, or none.
+            lost = np.repeat(np.flatnonzero(unknown_runs(runs)), FLIGHT_COUNT)
+            found = analysis.quantile_estimates(
+                np.concatenate([values, np.full(len(lost), np.nan)]),
+                np.concatenate([bed, runs.inputs["bed"].astype(int)[lost]]),
+                QUANTILES,
+                missing=np.arange(len(values) + len(lost)) >= len(values),
+            )
             points, ends = [one.value for one in found], [one.bounds for one in found]
         quantiles, intervals = (dict(zip(keys, one, strict=True)) for one in (points, ends))
         table[name] = ImpactNumber(quantiles, intervals, landings)
@@ -157,13 +167,15 @@ def _share(study: Study, runs: DesignRuns, share: np.ndarray) -> LandingFraction
 
 
 def parts_of_variance(
-    job: Job, runs: DesignRuns, y: np.ndarray, of: str, twins: np.ndarray | None = None
+    job: Job, runs: DesignRuns, y: np.ndarray, of: str, twins: np.ndarray | None = None, limits: Limits | None = None
 ) -> run_results.VarianceParts | None:
     """Parts of the variance of y [run_count], NaN where a run has none; None where the runs cannot tell.
 
     of: which runs it describes, in words. twins [pair_count]: differences of y between twins, where there are any.
+    limits: of y, for the runs without an outcome.
     """
-    return _parts(job, runs, _touchdown_inputs(job, runs), y, of, twins)
+    lost = unknown_runs(runs) & np.isnan(y)
+    return _parts(job, runs, _touchdown_inputs(job, runs), Split(y, of, lost, limits, twins))
 
 
 def parts_of_journeys(
@@ -176,14 +188,16 @@ def parts_of_journeys(
     """
     rests, everything = table.rests, f"{len(table.end)} journeys"
     of_rest = journeys_at_rest(int(rests.sum()), len(rests))
+    lost, event = table.unknown, (0.0, 1.0)
+    # A lander of unknown end may rest anywhere on the body, at any time until the limit.
     numbers = {
-        "at_rest": (rests.astype(float), everything),
-        "time_s": (table.of_rest("time_s"), of_rest),
-        "distance_m": (table.of_rest("distance"), of_rest),
+        "at_rest": Split(table.told(rests), everything, lost, event),
+        "time_s": Split(table.of_rest("time_s"), of_rest, lost, (0.0, job.study.journey.duration)),
+        "distance_m": Split(table.of_rest("distance"), of_rest, lost, (0.0, math.pi * job.site.aim_radius)),
     }
-    numbers |= {name: (met, everything) for name, met in limit_states.items()}
+    numbers |= {name: Split(met, everything, np.isnan(met), event) for name, met in limit_states.items()}
     inputs = _touchdown_inputs(job, runs) | _delivery_inputs(job, runs)
-    return {name: _parts(job, runs, inputs, y, of, None) for name, (y, of) in numbers.items()}
+    return {name: _parts(job, runs, inputs, one) for name, one in numbers.items()}
 
 
 def inputs_of_journeys(job: Job, runs: DesignRuns) -> Inputs:
@@ -240,9 +254,22 @@ def _delivery_inputs(job: Job, runs: DesignRuns) -> Inputs:
     return {f"site.{key}": (law, sites[key]) for key, law in job.site.distributions.items()}
 
 
-def _parts(
-    job: Job, runs: DesignRuns, inputs: Inputs, y: np.ndarray, of: str, twins: np.ndarray | None
-) -> run_results.VarianceParts | None:
+@dataclass(frozen=True)
+class Split:
+    """What is split into the parts of its variance: y [run_count], NaN where a run has none, and of which runs it is.
+
+    lost [run_count]: whether it is not known what became of a run; limits: of y for these; None: nothing limits them.
+    twins [pair_count]: differences of y between twins.
+    """
+
+    y: np.ndarray
+    of: str
+    lost: np.ndarray
+    limits: Limits | None
+    twins: np.ndarray | None = None
+
+
+def _parts(job: Job, runs: DesignRuns, inputs: Inputs, one: Split) -> run_results.VarianceParts | None:
     if not inputs:
         return None
     laws = {name: law for name, (law, _) in inputs.items()}
@@ -250,8 +277,11 @@ def _parts(
     x = independent_columns(job.study, {name: values for name, (_, values) in inputs.items()})
     soil = [key for key in laws if key.startswith(SOIL)]
     attitude = independent_terms(job.design, runs.inputs)
-    found = analysis.variance_shares(laws, x, y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=twins)
-    return None if found is None else run_results.VarianceParts.of_shares(found, of)
+    found = analysis.variance_shares(
+        laws, x, one.y, runs.inputs["bed"], soil=soil, attitude=attitude, twins=one.twins, missing=one.lost,
+        limits=one.limits,
+    )  # fmt: skip
+    return None if found is None else run_results.VarianceParts.of_shares(found, one.of)
 
 
 def estimate(job: Job) -> None:
@@ -264,18 +294,15 @@ def estimate(job: Job) -> None:
             f"none of the {runs.run_count} runs left the surface or was captured (runs.sqlite lists how each ended), "
             "so there is no result; correct the outcomes of the runs, or widen the bed"
         )
-    bed, why = runs.inputs["bed"].astype(int), run_answers.why_no_interval(study)
+    why = run_answers.why_no_interval(study)
     values = {name: runs.output(name) for name in SPLIT if name != RETURNS} | {RETURNS: returns}
-    found = return_fraction(study, runs, flights)
+    limits, found = output_limits(job, runs), return_fraction(study, runs, flights)
     estimates = Estimates(
         returns=found,
         shares=run_shares(study, runs, flights, found),
         flights=flight_estimates(RunImpacts.load(job.folder), runs, why),
-        variance_shares={name: _split(job, runs, name, y) for name, y in values.items()},
-        outputs={
-            name: _spread(name, y, bed, why, run_answers.described(np.isfinite(y), runs.outcomes))
-            for name, y in _outputs(runs).items()
-        },
+        variance_shares={name: _split(job, runs, name, y, limits.get(name)) for name, y in values.items()},
+        outputs={name: _spread(name, y, runs, why, limits.get(name)) for name, y in _outputs(runs).items()},
         runs=_counts(job, runs, values),
         sides=first_sides(study, runs, returns),
     )
@@ -289,18 +316,25 @@ def _outputs(runs: DesignRuns) -> dict[str, np.ndarray]:
 
 
 def _spread(
-    name: str, y: np.ndarray, bed: np.ndarray, why: str | None, of: str
+    name: str, y: np.ndarray, runs: DesignRuns, why: str | None, limits: Limits | None
 ) -> run_results.OutputEstimate | run_results.OutputDirection:
     """Mean and quantiles of an output over the runs that have it, with intervals where beds and places give them.
 
-    Of the azimuth, which has neither beginning nor end, mean direction and resultant length. of: landings it describes.
+    Of the azimuth, which has neither beginning nor end, mean direction and resultant length. limits: of the output, for
+    runs without an outcome.
     """
+    bed, lost, of = (
+        runs.inputs["bed"].astype(int),
+        unknown_runs(runs) & np.isnan(y),
+        described(np.isfinite(y), runs.outcomes),
+    )
     if name == AZIMUTH_OUT:
-        return run_results.OutputDirection(**vars(analysis.direction_estimate(y, bed, why=why)), of=of)
+        return run_results.OutputDirection(**vars(analysis.direction_estimate(y, bed, why=why, missing=lost)), of=of)
     known = y[np.isfinite(y)]
     several = len(np.unique(bed[np.isfinite(y)])) > 1
     if why is None and several:
-        mean, *quantiles = analysis.mean_estimate(y, bed), *analysis.quantile_estimates(y, bed, QUANTILES)
+        mean = analysis.mean_estimate(y, bed, missing=lost, limits=limits)
+        quantiles = analysis.quantile_estimates(y, bed, QUANTILES, missing=lost)
     else:
         points = [known.mean(), *np.quantile(known, QUANTILES, method="hazen")]
         mean, *quantiles = (Estimate(float(point), None, None) for point in points)
@@ -308,11 +342,13 @@ def _spread(
     return run_results.OutputEstimate(mean, dict(zip(levels, quantiles, strict=True)), float(known.std(ddof=1)), of)
 
 
-def _split(job: Job, runs: DesignRuns, name: str, y: np.ndarray) -> run_results.VarianceParts | None:
-    """Parts of the variance of an output; None where the runs cannot tell."""
+def _split(
+    job: Job, runs: DesignRuns, name: str, y: np.ndarray, limits: Limits | None
+) -> run_results.VarianceParts | None:
+    """Parts of the variance of an output; None where the runs cannot tell. limits: for runs without an outcome."""
     twins = _differences(job, "twins", name, y)
     known = twins if np.isfinite(twins).any() else None
-    return parts_of_variance(job, runs, y, run_answers.described(np.isfinite(y), runs.outcomes), known)
+    return parts_of_variance(job, runs, y, described(np.isfinite(y), runs.outcomes), known, limits)
 
 
 def _differences(job: Job, design: str, name: str, y: np.ndarray) -> np.ndarray:

@@ -15,7 +15,7 @@ from lithobrake.analysis import PairedDifference, quantile_difference, share_dif
 from lithobrake.files.atomic import write_json
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.journey_limit_states import journeys_met
-from lithobrake.pipeline.answer.run_answers import why_no_interval
+from lithobrake.pipeline.answer.run_answers import unknown_runs, why_no_interval
 from lithobrake.pipeline.commands.running_estimates import CAPTURED
 from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -202,8 +202,11 @@ def _journey_answers(
 ) -> Iterator[tuple[str, ComparedAnswer]]:
     tables = [JourneyTable.load(each.folder) for each in pair]
     for end in JourneyEnd:
-        met = [(table.end[:count] == end.value).astype(float) for table in tables]
-        if end is JourneyEnd.AT_REST or any(one.any() for one in met):
+        met = [table.end == end.value for table in tables]
+        if end is not JourneyEnd.FAILED:
+            met = [table.told(one) for table, one in zip(tables, met, strict=True)]
+        met = [one[:count].astype(float) for one in met]
+        if end is JourneyEnd.AT_REST or any((one == 1.0).any() for one in met):
             yield (
                 end.value,
                 _told(f"fraction {end.label}", "", share_difference(met[0], met[1], bed, why=why), is_fraction=True),
@@ -228,7 +231,9 @@ def _journey_answers(
     )
     for name, words, unit, counts in numbers:
         values = [np.where(table.rests, table.numbers[name], np.nan)[:count] for table in tables]
-        yield from _quantiles(name, words, unit, values, bed, why, counts=counts)
+        yield from _quantiles(
+            name, words, unit, values, bed, why, [table.unknown[:count] for table in tables], counts=counts
+        )
 
 
 def _bounce_answers(
@@ -247,11 +252,12 @@ def _bounce_answers(
             TouchdownOutcome.CAPTURED.value,
             _told("fraction captured", "", share_difference(captured[0], captured[1], bed, why=why), is_fraction=True),
         )
+    lost = [each.by_lander(unknown_runs(one).astype(float))[:count] == 1.0 for each, one in runs]
     for name in OUTPUTS:
         values = [each.by_lander(one.output(name))[:count] for each, one in runs]
         if all(np.isfinite(one).sum() > 1 for one in values):
             what = TOUCHDOWN[name]
-            yield from _quantiles(name, what.title or what.long_name, what.units, values, bed, why)
+            yield from _quantiles(name, what.title or what.long_name, what.units, values, bed, why, lost)
 
 
 def _captured(outcomes: Sequence[str]) -> np.ndarray:
@@ -266,14 +272,21 @@ def _quantiles(
     values: Sequence[np.ndarray],
     bed: np.ndarray,
     why: str | None,
+    lost: Sequence[np.ndarray],
     *,
     counts: bool = False,
 ) -> Iterator[tuple[str, ComparedAnswer]]:
-    """Median and 95th percentile of a number over the runs of each study that have it."""
+    """Median and 95th percentile of a number over the runs of each study that have it.
+
+    lost: of each study, whether it is not known what became of a run.
+    """
     if not all(np.isfinite(one).any() for one in values):
         return
     for level, title in ((MEDIAN, "median"), (HIGH, "95th percentile")):
-        found = quantile_difference(values[0], values[1], bed, level, counts=counts, why=why)
+        missing = tuple(out & np.isnan(one) for out, one in zip(lost, values, strict=True))
+        found = quantile_difference(
+            values[0], values[1], bed, level, counts=counts, why=why, missing=(missing[0], missing[1])
+        )
         yield f"{name}_{title.split()[0]}", _told(f"{words}, {title}", unit, found)
 
 
@@ -282,7 +295,7 @@ def _told(words: str, unit: str, found: PairedDifference, *, is_fraction: bool =
     first, second, difference = (one.without_reason for one in (found.first, found.second, found.difference))
     saved = found.landings_saved
     return ComparedAnswer(
-        words, unit, is_fraction, first, second, difference, found.pairs, found.correlation, saved
+        words, unit, is_fraction, first, second, difference, found.pairs, found.missing, found.correlation, saved
     )  # fmt: skip
 
 

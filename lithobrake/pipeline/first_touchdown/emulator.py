@@ -56,12 +56,22 @@ def fit_emulator(job: Job) -> None:
             raise ValueError(f"{why}; {remedy}, or set monte_carlo.sample_count to 0")
         job.folder.write_json(EMULATOR_FILE, {"why": f"{why}."})
         return
-    values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
-    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
-    bound = energy_bound(job.design, height, values, runs.run_count, across)
-    outputs = outputs_of_runs(runs, RIDERS)
+    bound, outputs = bound_of_runs(job, runs), outputs_of_runs(runs, RIDERS)
     inputs = inputs_met(job.design, runs) | attitude_laws(job.design, runs.inputs)
     fitted(job, inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
+
+
+def bound_of_runs(job: Job, runs: DesignRuns) -> EnergyBound:
+    """What energy allows each run [run_count]."""
+    values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
+    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
+    return energy_bound(job.design, height, values, runs.run_count, across)
+
+
+def runs_beyond(runs: DesignRuns, bound: EnergyBound) -> int:
+    """How many runs left with more speed and spin than energy allows."""
+    # At the bound of the speed nothing is left for a spin.
+    return int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
 
 
 def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:
@@ -163,8 +173,7 @@ def over_attitudes(model: "Emulator") -> "Emulator":
 
 def _is_kept(job: Job, runs: DesignRuns, bound: EnergyBound) -> bool:
     """Whether every run left within what energy allows; said aloud where some did not."""
-    # At the bound of the speed nothing is left for a spin.
-    beyond = int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
+    beyond = runs_beyond(runs, bound)
     if beyond:
         job.say(
             f"{beyond} of {runs.run_count} runs left with more speed and spin than the impact energy allows, so the "

@@ -18,7 +18,6 @@ from lithobrake.pipeline.journeys.first_arrivals import Arrivals
 from lithobrake.pipeline.journeys.landers import StudyLanders
 from lithobrake.pipeline.nowcast.contact_emulator import AfterContact, FirstContacts
 from lithobrake.pipeline.runs.run_table import DesignRuns
-from lithobrake.pipeline.site_grid import share_of_known
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results.site_results import MOST_UNKNOWN
 from lithobrake.smallbody.landers import follow
@@ -143,7 +142,7 @@ class ContactLanders:
 
     def at_rest(self, fitted: Refits) -> Estimate:
         """Share at rest of the landers of known end, over beds; bounds hold whatever becomes of the others."""
-        return share_of_known(self.rests, ~self.unknown, self.refit, fitted)
+        return fitted.share_of_known(self.rests, ~self.unknown, self.refit)
 
     def quantiles(self, name: str) -> list[float | None]:
         """Ends and median of the interval of a number of the landers at rest; None where none rests or is told."""

@@ -133,7 +133,7 @@ def _lost(soil: ExpectedSoil) -> Iterator[str]:
     if share > CUT_OFF:
         yield (
             f"About {percent(share)} of the landings may leave the bed laterally at these impact angles and have no "
-            "outcome: medians, quantiles, variance shares and the emulator will describe only the others, and every "
+            "outcome: medians, parts of the variance and the emulator will describe only the others, and every "
             "fraction will be uncertain by as much; widen the bed (bed.width, with bed.grain_count), or "
             "keep impact.incidence_deg steeper."
         )

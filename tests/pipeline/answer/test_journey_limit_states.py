@@ -10,8 +10,9 @@ import pytest
 
 from lithobrake.analysis.ground_spread import share_over_grounds
 from lithobrake.analysis.mean_over_grounds import mean_over_grounds
+from lithobrake.analysis.output_estimates import quantile_estimate
 from lithobrake.analysis.subset_simulation import limit_state_met
-from lithobrake.pipeline.answer import journey_limit_states, question_answers
+from lithobrake.pipeline.answer import journey_ends, journey_limit_states, question_answers
 from lithobrake.pipeline.answer.emulated_ends import EmulatedTable
 from lithobrake.pipeline.answer.journey_ends import JourneyTable, end_share
 from lithobrake.pipeline.answer.journey_limit_states import journey_limit_state, rest_values
@@ -74,6 +75,24 @@ def test_normal_scatter_rests_within_a_distance_as_rayleigh_has_it(job: Any) -> 
         values.append(found.value)
     assert np.mean(values) == pytest.approx(within(20.0), abs=0.008)
     assert 0.85 <= np.mean(held) <= 0.96
+
+
+def test_journeys_of_unknown_end_bound_the_first_page(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Three in ten of those that would not rest have failed: value without them, bounds whatever they came to."""
+    monkeypatch.setattr(journey_ends, "why_no_interval", lambda study: None)
+    end = np.repeat(["at_rest", "under_way", "failed"], [144, 34, 14])[np.random.default_rng(8).permutation(COUNT)]
+    table = rested(*np.random.default_rng(9).normal(0.0, SIGMA, (2, COUNT)), end)
+    found = journey_ends.end_shares(Any, table)
+    rests, failed = found["at_rest"], found["failed"]
+    assert (rests.count, failed.count) == (144, 14)
+    assert rests.share.value == pytest.approx(144 / 178)
+    assert rests.share.lower < 144 / COUNT < 158 / COUNT < rests.share.upper
+    assert sum(one.share.value for name, one in found.items() if name != "failed") == pytest.approx(1.0)
+    distance = np.where(end == "at_rest", table.numbers["distance"], np.nan)
+    plain = quantile_estimate(distance, BED, 0.5)
+    median = quantile_estimate(distance, BED, 0.5, missing=table.unknown)
+    assert median.lower < plain.lower
+    assert median.upper > plain.upper
 
 
 def test_regions_and_their_parts_are_told_by_latitude_and_longitude(job: Any) -> None:

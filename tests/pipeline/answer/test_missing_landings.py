@@ -30,6 +30,7 @@ def test_more_than_2_per_cent_without_an_outcome_are_warned_of_with_the_cure(stu
     assert missing_warning(study, {"clear": 98, "left_sideways": 2}) is None
     said = missing_warning(study, {"clear": 204, "left_sideways": 30, "time_limit": 6})
     assert said.startswith("36 of 240 landings (15 %) have no outcome (30 left the bed laterally, 6 in contact at ")
+    assert "intervals hold whatever became of them" in said
     assert "describe only the other 204" in said
     for key in ("bed.width", "impact.incidence_deg", "landing.time_limit"):
         assert key in said

@@ -20,6 +20,7 @@ from lithobrake.pipeline.commands.running_estimates import running_estimates
 from lithobrake.results.questions import StudyComparison
 from lithobrake.results.study_files import results_in
 from lithobrake.results.table import Table
+from lithobrake.statements.comparison import sentence
 from lithobrake.vocabulary.quantities import BEDS
 
 from ..journeys.bouncing_lander import journey_tables, run_without_emulator
@@ -147,9 +148,14 @@ def test_differences_are_those_of_the_pairs(pair: tuple[Path, Path]) -> None:
     found = compare_studies(*pair)
     slow, fast = (lithobrake.open_study(path).journeys for path in pair)
     rests = [table["end"][:36] == "at_rest" for table in (slow, fast)]
+    failed = [table["end"][:36] == "failed" for table in (slow, fast)]
     answer = found.answers["at_rest"]
-    assert (answer.pairs, answer.is_fraction) == (36, True)
-    assert answer.difference.value == pytest.approx(rests[1].mean() - rests[0].mean())
+    assert (answer.pairs, answer.is_fraction) == ((~failed[0] & ~failed[1]).sum(), True)
+    # A failed journey is none of those that do not rest.
+    assert answer.missing == tuple(one.mean() for one in failed)
+    means = [one[~out].mean() for one, out in zip(rests, failed, strict=True)]
+    assert answer.difference.value == pytest.approx(means[1] - means[0])
+    assert "have an unknown outcome, and bounds hold whatever became of them" in sentence(found, "at_rest")
     assert answer.difference.lower < answer.difference.value < answer.difference.upper
     time = found.answers["time_s_median"]
     medians = [np.median(table["time_s"][:36][rest]) for table, rest in zip((slow, fast), rests, strict=True)]
@@ -168,10 +174,13 @@ def test_landers_that_miss_the_ground_keep_their_number(tmp_path: Path) -> None:
         run_without_emulator(tables(delivery={"states": str(states)}), tmp_path / name)
         folders.append(tmp_path / name)
     found = compare_studies(*folders)
-    ends = [lithobrake.open_study(folder).journeys["end"] == "at_rest" for folder in folders]
+    ends = [lithobrake.open_study(folder).journeys["end"] for folder in folders]
     assert f"{len(ends[0])} pairs" in found.of
-    answer = found.answers["at_rest"]
-    assert (answer.difference.value, answer.pairs) == (pytest.approx(ends[1].mean() - ends[0].mean()), len(ends[0]))
+    answer, known = found.answers["at_rest"], [one != "failed" for one in ends]
+    rests = [(one == "at_rest")[told].mean() for one, told in zip(ends, known, strict=True)]
+    both = (known[0] & known[1]).sum()
+    assert (answer.difference.value, answer.pairs) == (pytest.approx(rests[1] - rests[0]), both)
+    assert both < len(ends[0])
     assert found.answers["captured"].pairs == len(ends[0]) - 2
 
 

@@ -29,7 +29,6 @@ from lithobrake.pipeline.site_grid import (
     SiteGround,
     SiteLanders,
     all_at_rest,
-    share_of_known,
     site_arrivals,
     site_cells,
 )
@@ -173,9 +172,9 @@ def test_emulator_and_landings_are_compared_lander_by_lander(site_map: SiteMap, 
 def test_bounds_hold_whatever_becomes_of_landers_of_unknown_end() -> None:
     fitted = Refits(bed_count=12, run_count=100, why=None)
     refit, met = np.repeat(np.arange(REFITS), 4), np.tile([True, True, False, False], REFITS)
-    plain = share_of_known(met, np.ones(len(met), dtype=bool), refit, fitted)
+    plain = fitted.share_of_known(met, np.ones(len(met), dtype=bool), refit)
     # One lander in four is unknown, and did not meet it as far as one sees.
-    lacking = share_of_known(met, np.tile([True, True, True, False], REFITS), refit, fitted)
+    lacking = fitted.share_of_known(met, np.tile([True, True, True, False], REFITS), refit)
     assert plain.value == 0.5
     assert (lacking.value, lacking.lower) == (pytest.approx(2.0 / 3.0), plain.lower)
     assert lacking.upper > 0.75
