@@ -23,6 +23,7 @@ from lithobrake.analysis.share_estimate import ONE_BED, standard_error
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_TAIL
 from lithobrake.vocabulary.estimate import Estimate
+from lithobrake.vocabulary.given_numbers import numbers_or_nan
 from lithobrake.vocabulary.number_words import QUANTILES
 
 # Quantiles of less than this probability, or more than 1 less it, take so many beds for an interval: on fewer beds a
@@ -84,13 +85,18 @@ def filled_ends(y: ArrayLike, lost: NDArray[np.bool_], limits: Limits | None) ->
 
 
 def quantile_estimates(
-    y: ArrayLike, bed: ArrayLike, probabilities: Sequence[float] = QUANTILES, *, missing: ArrayLike | None = None
+    y: ArrayLike,
+    bed: ArrayLike,
+    probabilities: Sequence[float] = QUANTILES,
+    *,
+    missing: ArrayLike | None = None,
+    limits: Limits | None = None,
 ) -> list[Estimate]:
     """Quantiles of an output y [run_count], NaN where a run has none, with their intervals from beds [run_count].
 
     The share of runs below a quantile has an interval from beds; the bounds are the quantiles at its ends, so they
     follow the skewness of the output and stay among its values. Below 0.1 and above 0.9 fewer than ten beds give no
-    interval. missing [run_count]: as for `quantile_estimate`. Raises ValueError for runs on one bed, and for
+    interval. missing [run_count], limits: as for `quantile_estimate`. Raises ValueError for runs on one bed, and for
     probabilities outside 0 to 1.
     Source: [Woodruff-1952] (intervals of quantiles); [Hyndman-1996], definition 5 (a run in the middle of its step).
     """
@@ -98,7 +104,7 @@ def quantile_estimates(
         raise ValueError(f"probabilities are {list(probabilities)}; each must lie between 0 and 1")
     values, beds = _known(y, bed)
     if lost_runs(missing, y).any():
-        return [quantile_estimate(y, bed, probability, missing=missing) for probability in probabilities]
+        return [quantile_estimate(y, bed, one, missing=missing, limits=limits) for one in probabilities]
     ordered, places = np.sort(values), (np.arange(len(values)) + 0.5) / len(values)
     found = []
     for probability in probabilities:
@@ -121,6 +127,7 @@ def quantile_estimate(
     counts: bool = False,
     why: str | None = None,
     missing: ArrayLike | None = None,
+    limits: Limits | None = None,
 ) -> Estimate:
     """Estimate a quantile of an output y [run_count], NaN where a run has none, with its interval where there is one.
 
@@ -130,6 +137,8 @@ def quantile_estimate(
     missing  whether it is not known what became of a run [run_count], so that it may have the output or not: its value
              may lie below or above all others, so the bounds are those of the quantile with either, each with a
              sampling error that holds each quantile between at the level
+    limits   least and most that a run may have, as for `mean_estimate`: where missing runs leave an end beyond all
+             values, it is the least or the most of all runs
 
     The share of runs below the true quantile scatters about the probability by its error from beds, as a beta law does;
     the bounds are the quantiles at the ends of that law's interval. One beyond the middle of the last step is None: the
@@ -152,9 +161,17 @@ def quantile_estimate(
         return Estimate(quantile, None, None, why_missing=why)
     lost = lost_runs(missing, y)
     lower, upper = _quantile_bounds(y, bed, lost, (quantile, probability, counts))
+    if lost.any() and limits is not None:
+        least, most = (numbers_or_nan("limits", end) for end in limits)
+        lower = _finite(float(least.min())) if lower is None else lower
+        upper = _finite(float(most.max())) if upper is None else upper
     ends = [name for name, end in (("lower", lower), ("upper", upper)) if end is None]
     beyond = f"the {' and the '.join(ends)} end lies beyond all {len(values)} values" if ends else None
     return Estimate(quantile, lower, upper, why_missing=open_end(lost, beyond))
+
+
+def _finite(end: float) -> float | None:
+    return end if math.isfinite(end) else None
 
 
 def quantile_ends(

@@ -59,6 +59,11 @@ def test_a_quantile_reaches_from_all_missing_runs_below_to_all_above(level: floa
     if None in (found.lower, found.upper):
         assert "24 runs of 240 (10.0 %) have no outcome" in (found.why_missing or "")
     assert [quantile_estimates(KNOWN, BED, [level], missing=LOST)[0]] == [found]
+    within = quantile_estimate(KNOWN, BED, level, missing=LOST, limits=LIMITS)
+    assert within.lower == (LIMITS[0] if found.lower is None else found.lower)
+    assert within.upper == (LIMITS[1] if found.upper is None else found.upper)
+    half = quantile_estimate(KNOWN, BED, level, missing=LOST, limits=(0.0, math.inf))
+    assert half.upper == found.upper
 
 
 def test_a_quantile_of_runs_that_are_all_known_is_what_it_was() -> None:

@@ -334,7 +334,7 @@ def _spread(
     several = len(np.unique(bed[np.isfinite(y)])) > 1
     if why is None and several:
         mean = analysis.mean_estimate(y, bed, missing=lost, limits=limits)
-        quantiles = analysis.quantile_estimates(y, bed, QUANTILES, missing=lost)
+        quantiles = analysis.quantile_estimates(y, bed, QUANTILES, missing=lost, limits=limits)
     else:
         points = [known.mean(), *np.quantile(known, QUANTILES, method="hazen")]
         mean, *quantiles = (Estimate(float(point), None, None) for point in points)
