@@ -13,6 +13,7 @@ from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning import expected_time
+from lithobrake.pipeline.planning.expected_difference import PlannedStudy, check_half_width, expected_difference
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.expected_width import expected_width, runs_a_bed
 from lithobrake.pipeline.planning.known_journeys import journeys_under_way
@@ -42,21 +43,43 @@ FOLLOWED = frozenset({"emulated", "hard_ground"})
 SHOW_LANDINGS = frozenset({"landing", "telling_landing"})
 
 
-def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers: bool = False) -> Plan:
+def plan_study(
+    path: Path,
+    out: Path,
+    worker_count: int | None = None,
+    *,
+    infers: bool = False,
+    against: tuple[Path, Path] | None = None,
+    half_width: float | None = None,
+) -> Plan:
     """Plan what `run_study` would do with the same arguments; writes nothing.
 
-    infers: also what bounces on the soil of the study would say, by its emulator, within seconds.
+    infers: also what bounces on the soil of the study would say, by its emulator, within seconds. against: file and
+    folder of another study, how well the difference to which will be known; half_width: that the difference shall have.
     Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger
-    that is none.
+    that is none, two studies that cannot be compared, and a half-width without another study.
     """
+    check_half_width(half_width)
+    if half_width is not None and against is None:
+        raise ValueError("--half-width is that of a difference; name the other study with --against")
+    planned = _planned(path, out, worker_count)
+    plan = planned.plan
+    if against is not None:
+        difference = expected_difference(planned, _planned(*against, worker_count), half_width)
+        plan = replace(plan, difference=difference)
+    return replace(plan, inference=_expected_inference(plan, planned.design.study, path)) if infers else plan
+
+
+def _planned(path: Path, out: Path, worker_count: int | None) -> PlannedStudy:
     source = StudySource.read(path)
     study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
     refuse_others_folder(source, out)
     design = DrawnDesign(study)
     Soils(design.site).refuse()
     refuse_hidden_orbiter(design.site)
-    plan = plan_of(grown(design, folder), study.title or path.stem, folder, worker_count)
-    return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
+    grown_design = grown(design, folder)
+    plan = plan_of(grown_design, study.title or path.stem, folder, worker_count)
+    return PlannedStudy(source.name, out, source.tables, grown_design, plan)
 
 
 def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:
