@@ -14,8 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-import numpy as np
-from pairing_correlations import judged
+from pairing_correlations import JOURNEYS, TOUCHDOWNS, judged
 
 from lithobrake.files.reading import read_rows as read_table
 from lithobrake.pipeline import run_study
@@ -28,7 +27,6 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
 from harness import SCENARIOS, Row, add_row, between, command_line, origin, read_rows, study_tables, write_document
 
 HERE = Path(__file__).parent
-TOUCHDOWNS, JOURNEYS = HERE / "pairing_touchdowns.csv", HERE / "pairing_journeys.csv"
 COUNT, BEDS, SEED = 24, 8, 301
 BED = {"bed_count": BEDS, "grain_count": 110, "width": [0.6, 0.6]}
 # Faster and flatter than in the scenario, where all come to rest at the first touchdowns; a softer soil takes longer

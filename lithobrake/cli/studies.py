@@ -177,10 +177,17 @@ def plan(
 ) -> None:
     """Print the runs of a study, their time and disk space, the expected half-width, and warnings. Runs nothing."""
     folder = arguments.study_folder(study, out)
-    other = None if against is None else (against, arguments.study_folder(against, None))
-    from lithobrake.pipeline import plan_lines, plan_study
+    if against is None and half_width is not None:
+        raise ValueError("--half-width is that of a difference; name the other study with --against")
+    if against is not None and infer:
+        raise ValueError("--against and --infer are two questions; ask them one after the other")
+    from lithobrake.pipeline import plan_comparison, plan_lines, plan_study
 
-    found = plan_study(study, folder, workers, infers=infer, against=other, half_width=half_width)
+    if against is None:
+        found = plan_study(study, folder, workers, infers=infer)
+    else:
+        other = arguments.study_folder(against, None)
+        found = plan_comparison(study, folder, against, other, workers, half_width=half_width)
     arguments.tell_result(json, found.to_json(), plan_lines(found))
 
 

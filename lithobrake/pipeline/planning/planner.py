@@ -2,9 +2,10 @@
 
 import shlex
 import shutil
-from collections.abc import Set
-from dataclasses import replace
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from lithobrake.campaign import available_cores
 from lithobrake.pipeline.design.descents import descents_in_words
@@ -13,7 +14,6 @@ from lithobrake.pipeline.design.soils import Soils
 from lithobrake.pipeline.inferred_study import ExpectedInference, InferredStudy
 from lithobrake.pipeline.outdated_files import stage_keys
 from lithobrake.pipeline.planning import expected_time
-from lithobrake.pipeline.planning.expected_difference import PlannedStudy, check_half_width, expected_difference
 from lithobrake.pipeline.planning.expected_steps import ExpectedSoil, PlannedRuns, possible_runs
 from lithobrake.pipeline.planning.expected_width import expected_width, runs_a_bed
 from lithobrake.pipeline.planning.known_journeys import journeys_under_way
@@ -43,43 +43,40 @@ FOLLOWED = frozenset({"emulated", "hard_ground"})
 SHOW_LANDINGS = frozenset({"landing", "telling_landing"})
 
 
-def plan_study(
-    path: Path,
-    out: Path,
-    worker_count: int | None = None,
-    *,
-    infers: bool = False,
-    against: tuple[Path, Path] | None = None,
-    half_width: float | None = None,
-) -> Plan:
+def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers: bool = False) -> Plan:
     """Plan what `run_study` would do with the same arguments; writes nothing.
 
-    infers: also what bounces on the soil of the study would say, by its emulator, within seconds. against: file and
-    folder of another study, how well the difference to which will be known; half_width: that the difference shall have.
+    infers: also what bounces on the soil of the study would say, by its emulator, within seconds.
     Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger
-    that is none, two studies that cannot be compared, and a half-width without another study.
+    that is none.
     """
-    check_half_width(half_width)
-    if half_width is not None and against is None:
-        raise ValueError("--half-width is that of a difference; name the other study with --against")
-    planned = _planned(path, out, worker_count)
+    planned = PlannedStudy.of(path, out, worker_count)
     plan = planned.plan
-    if against is not None:
-        difference = expected_difference(planned, _planned(*against, worker_count), half_width)
-        plan = replace(plan, difference=difference)
     return replace(plan, inference=_expected_inference(plan, planned.design.study, path)) if infers else plan
 
 
-def _planned(path: Path, out: Path, worker_count: int | None) -> PlannedStudy:
-    source = StudySource.read(path)
-    study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
-    refuse_others_folder(source, out)
-    design = DrawnDesign(study)
-    Soils(design.site).refuse()
-    refuse_hidden_orbiter(design.site)
-    grown_design = grown(design, folder)
-    plan = plan_of(grown_design, study.title or path.stem, folder, worker_count)
-    return PlannedStudy(source.name, out, source.tables, grown_design, plan)
+@dataclass(frozen=True)
+class PlannedStudy:
+    """A study with its plan: name of its file, folder, tables, and what it draws."""
+
+    name: str
+    folder: Path
+    tables: Mapping[str, Any]
+    design: DrawnDesign
+    plan: Plan
+
+    @classmethod
+    def of(cls, path: Path, out: Path, worker_count: int | None = None) -> "PlannedStudy":
+        """Plan a study file in a folder; raises as plan_study."""
+        source = StudySource.read(path)
+        study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
+        refuse_others_folder(source, out)
+        design = DrawnDesign(study)
+        Soils(design.site).refuse()
+        refuse_hidden_orbiter(design.site)
+        design = grown(design, folder)
+        plan = plan_of(design, study.title or path.stem, folder, worker_count)
+        return cls(source.name, out, source.tables, design, plan)
 
 
 def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:
