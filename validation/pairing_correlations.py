@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lithobrake.analysis import quantile_difference, share_difference
 from lithobrake.analysis.confidence import normal_quantile
 from lithobrake.vocabulary.quantities import ORIENTATION, VELOCITY_OUT
 
@@ -26,13 +27,16 @@ OF_REBOUND = (*VELOCITY_OUT, "speed_out", "spin_out", "contact_duration")
 OF_JOURNEY = ("time_s", "distance", "way", "contacts", "path_length")
 LATEST = 3  # touchdowns; few journeys have more
 FEWEST = 8  # pairs of a correlation
+# Of these the logarithm: they vary over decades.
+BY_DECADES = ("time_s", "distance", "way", "path_length")
 Pair = tuple[float, float]
 
 
-def correlation(pairs: Iterable[Pair], *, either_way: bool = False) -> Row | None:
-    """Correlation of pairs with its interval by Fisher's z; either_way: no member of a pair is the first.
+def correlation(pairs: Iterable[Pair], *, either_way: bool = False, units: int | None = None) -> Row | None:
+    """Correlation of pairs with its interval by Fisher's z.
 
-    None for fewer than FEWEST pairs of numbers, and where one does not vary. Source: [Fisher-1921].
+    either_way: no member of a pair is the first. units: how many of the pairs are independent, None: all of them. None
+    for fewer than FEWEST pairs of numbers, and where one does not vary.
     """
     values = np.array([pair for pair in pairs if np.isfinite(pair).all()])
     count = len(values)
@@ -41,7 +45,7 @@ def correlation(pairs: Iterable[Pair], *, either_way: bool = False) -> Row | Non
     if either_way:
         values = np.concatenate([values, values[:, ::-1]])
     r = float(np.corrcoef(values.T)[0, 1])
-    z, half = math.atanh(max(min(r, 1.0 - 1e-12), -1.0 + 1e-12)), normal_quantile() / math.sqrt(count - 3)
+    z, half = math.atanh(max(min(r, 1.0 - 1e-12), -1.0 + 1e-12)), normal_quantile() / math.sqrt((units or count) - 3)
     return {"r": r, "lower": math.tanh(z - half), "upper": math.tanh(z + half), "pairs": count}
 
 
@@ -64,7 +68,10 @@ def shared_numbers(rows: Sequence[Row]) -> dict[str, Row]:
             same = [name for name, a, b in zip(FACTORS, one, two, strict=False) if a == b]
             found[" and ".join(same) or "none"].append((block[one], block[two]))
     return {
-        same: {name: correlation([(a[name], b[name]) for a, b in pairs], either_way=True) for name in OF_GRAINS}
+        same: {
+            name: correlation([(a[name], b[name]) for a, b in pairs], either_way=True, units=len(by_block))
+            for name in OF_GRAINS
+        }
         for same, pairs in found.items()
     }
 
@@ -100,20 +107,35 @@ def of_journeys(pairs: Sequence[tuple[Row, Row]]) -> Row:
         "at_rest_of_each": [sum(ends) for ends in zip(*rest, strict=True)],
         **{name: correlation(values) for name, values in numbers.items()},
         **{f"{name}_median": by_median(values) for name, values in numbers.items()},
+        "compared": compared(pairs),
         "same_face": sum(a["face"] == b["face"] for a, b in down),
         "same_axis": sum(a == b for a, b in sides),
         "both_at_rest": len(down),
     }
 
 
+def compared(pairs: Sequence[tuple[Row, Row]]) -> Row:
+    """What `lithobrake compare` makes of the pairs: correlation, and landings saved."""
+    bed = np.array([a["bed"] for a, _ in pairs])
+    rest = np.array([[one["end"] == "at_rest" for one in pair] for pair in pairs])
+    found = {"at_rest": share_difference(*rest.T.astype(float), bed)}
+    for name in ("time_s", "distance"):
+        values = np.where(rest, [[one[name] for one in pair] for pair in pairs], np.nan)
+        found[f"{name}_median"] = quantile_difference(*values.T, bed, 0.5)
+    return {name: {"r": one.correlation, "saved": one.landings_saved} for name, one in found.items()}
+
+
 def on_one_bed(journeys: Sequence[Row]) -> Row:
     """Pairs of different journeys of one study on one bed."""
     pairs = [(a, b) for a, b in itertools.combinations(journeys, 2) if a["bed"] == b["bed"]]
+    beds = len({row["bed"] for row in journeys})
     found: Row = {
         "at_rest": correlation([tuple(float(x["end"] == "at_rest") for x in p) for p in pairs], either_way=True)
     }
     down = [pair for pair in pairs if all(one["end"] == "at_rest" for one in pair)]
-    return found | {name: correlation([(a[name], b[name]) for a, b in down], either_way=True) for name in OF_JOURNEY}
+    return found | {
+        name: correlation([(a[name], b[name]) for a, b in down], either_way=True, units=beds) for name in OF_JOURNEY
+    }
 
 
 def judged() -> Row:
@@ -123,6 +145,7 @@ def judged() -> Row:
     journeys = read_rows(JOURNEYS, {"option": str, "end": str, "face": str, **whole})
     for row in journeys:
         row["way"] = math.hypot(row["way_x"], row["way_y"], row["way_z"])
+        row |= {name: math.log(row[name]) for name in BY_DECADES if row[name] > 0.0}
     options = list(dict.fromkeys(row["option"] for row in journeys))
     at = {name: {(row["journey"], row["touchdown"]): row for row in landings if row["option"] == name}
           for name in options}  # fmt: skip

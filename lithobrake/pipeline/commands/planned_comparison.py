@@ -9,6 +9,7 @@ from lithobrake.pipeline.planning.expected_difference import ExpectedDifference,
 from lithobrake.pipeline.planning.plan import Plan
 from lithobrake.pipeline.planning.planner import PlannedStudy
 from lithobrake.pipeline.shared_numbers import FIRST, SECOND, SharedNumbers, pair_count
+from lithobrake.study import Study
 
 # Half-widths of a fraction that may be asked for end here: an interval from 0 to 1.
 WIDEST = 0.5
@@ -30,7 +31,9 @@ def plan_comparison(
             "points)"
         )
     one, two = PlannedStudy.of(path, out, worker_count), PlannedStudy.of(other, other_out, worker_count)
-    return replace(one.plan, difference=_difference(one, two, half_width))
+    # Studies that cannot be compared are refused before their plans, which take seconds.
+    difference = _difference(one, two, half_width)
+    return replace(one.plan, difference=difference)
 
 
 def _difference(one: PlannedStudy, two: PlannedStudy, half_width: float | None) -> ExpectedDifference:
@@ -40,11 +43,11 @@ def _difference(one: PlannedStudy, two: PlannedStudy, half_width: float | None) 
         if not each.design.study.design.run_count:
             raise ValueError(f"{each.name} draws no lander (design.run_count is 0); compare studies that draw some")
     pairs = pair_count(*(SharedNumbers.of_design(each.design, each.name) for each in (one, two)))
-    answers = [answer_words(each.design.study) for each in (one, two)]
+    answers = [_asked(each.design.study) for each in (one, two)]
     if answers[0] != answers[1]:
         raise ValueError(
             f"{one.name} ({FIRST}) asks for {answers[0]} and {two.name} ({SECOND}) for {answers[1]}; give both the "
-            "same design.half_width_of"
+            "same design.half_width_of and condition"
         )
     widths = one.plan.half_width, two.plan.half_width
     if widths[0] is None or widths[1] is None:
@@ -57,6 +60,12 @@ def _difference(one: PlannedStudy, two: PlannedStudy, half_width: float | None) 
     return ExpectedDifference.of(
         two.name, pairs, beds, one.design.study, (widths[0], widths[1]), gains, basis, half_width
     )  # fmt: skip
+
+
+def _asked(study: Study) -> str:
+    """What the half-width of a study is of, with the condition of a limit state."""
+    name = study.design.half_width_of
+    return answer_words(study) if name is None else f"{answer_words(study)} ({study.limit_states.conditions()[name]})"
 
 
 def _measured(one: PlannedStudy, two: PlannedStudy) -> tuple[dict[str, float], str]:

@@ -4,6 +4,7 @@ import shlex
 import shutil
 from collections.abc import Mapping, Set
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -57,26 +58,35 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
 
 @dataclass(frozen=True)
 class PlannedStudy:
-    """A study with its plan: name of its file, folder, tables, and what it draws."""
+    """A study that may be run: its file, folder, tables, what it draws, and the processes that it has."""
 
-    name: str
+    path: Path
     folder: Path
     tables: Mapping[str, Any]
     design: DrawnDesign
-    plan: Plan
+    worker_count: int | None
 
     @classmethod
     def of(cls, path: Path, out: Path, worker_count: int | None = None) -> "PlannedStudy":
-        """Plan a study file in a folder; raises as plan_study."""
+        """Read and check a study file and its folder; raises as plan_study."""
         source = StudySource.read(path)
         study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
         refuse_others_folder(source, out)
         design = DrawnDesign(study)
         Soils(design.site).refuse()
         refuse_hidden_orbiter(design.site)
-        design = grown(design, folder)
-        plan = plan_of(design, study.title or path.stem, folder, worker_count)
-        return cls(source.name, out, source.tables, design, plan)
+        return cls(path, out, source.tables, grown(design, folder), worker_count)
+
+    @property
+    def name(self) -> str:
+        """Its file, for messages."""
+        return str(self.path)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """What it will do."""
+        title = self.design.study.title or self.path.stem
+        return plan_of(self.design, title, StudyFolder.only_read(self.folder), self.worker_count)
 
 
 def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:
