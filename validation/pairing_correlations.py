@@ -25,7 +25,7 @@ OF_GRAINS = ("speed_out", "elevation_out", "spin_out", "returns")
 OF_IMPACT = ("impact.speed", "impact.incidence_deg")
 OF_REBOUND = (*VELOCITY_OUT, "speed_out", "spin_out", "contact_duration")
 OF_JOURNEY = ("time_s", "distance", "way", "contacts", "path_length")
-LATEST = 3  # touchdowns; few journeys have more
+LATEST = 3  # touchdowns, the last of which are the third and all later ones
 FEWEST = 8  # pairs of a correlation
 # Of these the logarithm: they vary over decades.
 BY_DECADES = ("time_s", "distance", "way", "path_length")
@@ -86,7 +86,8 @@ def by_contact(first: dict[tuple[int, int], Row], second: dict[tuple[int, int], 
     """Correlations at each touchdown of the pairs that both have it; attitude_deg: median angle between them."""
     found = []
     for number in range(LATEST):
-        both = [(first[key], second[key]) for key in first if key[1] == number and key in second]
+        # The last ones together.
+        both = [(first[key], second[key]) for key in first if min(key[1], LATEST - 1) == number and key in second]
         if len(both) < FEWEST:
             break
         of = {name: correlation((a[name], b[name]) for a, b in both) for name in (*OF_IMPACT, *OF_REBOUND)}
@@ -120,7 +121,7 @@ def compared(pairs: Sequence[tuple[Row, Row]]) -> Row:
     rest = np.array([[one["end"] == "at_rest" for one in pair] for pair in pairs])
     found = {"at_rest": share_difference(*rest.T.astype(float), bed)}
     for name in ("time_s", "distance"):
-        values = np.where(rest, [[one[name] for one in pair] for pair in pairs], np.nan)
+        values = np.where(rest, np.exp([[one[name] for one in pair] for pair in pairs]), np.nan)
         found[f"{name}_median"] = quantile_difference(*values.T, bed, 0.5)
     return {name: {"r": one.correlation, "saved": one.landings_saved} for name, one in found.items()}
 
