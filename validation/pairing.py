@@ -45,7 +45,7 @@ OPTIONS: dict[str, dict[str, Row]] = {
     "speed +0.0001 %": speed(1.000001),
     "mass +10 %": {"lander": {"mass": 2.2}},
     "speed +30 %": speed(1.3),
-    "speed +1 %": speed(1.01),
+    "restitution 0.8": {"grain": {"restitution": between(0.75, 0.85)}},
 }
 INPUTS = ("impact.speed", "impact.incidence_deg", *PLACE, *ORIENTATION, *SPIN)
 OUTPUTS = (*VELOCITY_OUT, "speed_out", "spin_out", "contact_duration", "penetration")

@@ -1,9 +1,12 @@
 """Half-widths of a difference of two studies, and the beds that one asks for."""
 
+import math
+
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
-from lithobrake.analysis import expected_half_width
+from lithobrake.analysis import expected_half_width, share_difference
 from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.paired_widths import beds_for_half_width, difference_half_width, half_width_on
 from lithobrake.vocabulary.estimate import Estimate
@@ -28,6 +31,21 @@ def test_the_beds_asked_for_are_the_fewest(asked: float) -> None:
     beds = beds_for_half_width(0.1, 12, asked)
     assert half_width_on(0.1, 12, beds) <= asked
     assert beds == 2 or half_width_on(0.1, 12, beds - 1) > asked
+
+
+@pytest.mark.parametrize(("chance", "other"), [(0.5, 0.6), (0.9, 0.8)])
+def test_what_pairs_gain_follows_from_their_correlation(chance: float, other: float) -> None:
+    """Of synthetic pairs on beds that explain 7 % of the variance."""
+    random, bed = np.random.default_rng(3), np.arange(96) % 24
+    made, expected = [], []
+    for _ in range(30):
+        common = random.standard_normal(24)[bed] * math.sqrt(0.07) + random.standard_normal(96) * math.sqrt(0.93)
+        one, two = (0.95 * common + math.sqrt(1.0 - 0.95**2) * random.standard_normal(96) for _ in range(2))
+        found = share_difference(one < ndtri(chance), two < ndtri(other), bed)
+        lower, upper = found.unpaired or (math.nan, math.nan)
+        made.append(found.difference.half_width)
+        expected.append(0.5 * (upper - lower) * math.sqrt(1.0 - (found.correlation or 0.0)))
+    assert np.mean(made) == pytest.approx(np.mean(expected), rel=0.1)
 
 
 @pytest.mark.parametrize(("call", "said"), [
