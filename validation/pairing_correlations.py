@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lithobrake.analysis import quantile_difference, share_difference
+from lithobrake.analysis import quantile_difference, ratio_difference, share_difference
 from lithobrake.analysis.confidence import normal_quantile
 from lithobrake.vocabulary.quantities import ORIENTATION, VELOCITY_OUT
 
@@ -123,6 +123,7 @@ def compared(pairs: Sequence[tuple[Row, Row]]) -> Row:
     for name in ("time_s", "distance"):
         values = np.where(rest, np.exp([[one[name] for one in pair] for pair in pairs]), np.nan)
         found[f"{name}_median"] = quantile_difference(*values.T, bed, 0.5)
+        found[f"{name}_ratio"] = ratio_difference(*values.T, bed)
     return {name: {"r": one.correlation, "saved": one.landings_saved} for name, one in found.items()}
 
 

@@ -1,14 +1,7 @@
 """What runs and a fitted expansion say: estimates with their intervals, samples, outcomes."""
 
 from lithobrake.analysis.bayesian_inference import LearntInput, Posterior, infer
-from lithobrake.analysis.comparisons import (
-    BestChoice,
-    PairedDifference,
-    best_choice,
-    quantile_difference,
-    quantile_within,
-    share_difference,
-)
+from lithobrake.analysis.comparisons import BestChoice, best_choice, quantile_within
 from lithobrake.analysis.confidence import LEVEL, wilson_interval
 from lithobrake.analysis.control_variate import chaos_variance, regression_terms, soil_total_effect
 from lithobrake.analysis.equal_area import EqualAreaCells
@@ -40,6 +33,12 @@ from lithobrake.analysis.output_estimates import (
     quantile_estimate,
     quantile_estimates,
 )
+from lithobrake.analysis.paired_differences import (
+    PairedDifference,
+    quantile_difference,
+    ratio_difference,
+    share_difference,
+)
 from lithobrake.analysis.posterior import Observation, bed_shares, beds_statement
 from lithobrake.analysis.regions import DensityRegion, Ellipses, HighestDensity, dispersion_ellipses, highest_density
 from lithobrake.analysis.share_estimate import share_estimate
@@ -58,7 +57,8 @@ __all__ = [
     "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures", "expected_half_width",
     "failure_inputs", "failure_probability", "half_width_of", "half_width_range", "highest_density", "identifiability",
     "infer", "mean_estimate", "next_run_count", "predictive_p_value", "quantile_difference", "quantile_estimate",
-    "quantile_estimates", "quantile_within", "refit_interval", "regression_terms", "runs_for_half_width",
+    "quantile_estimates", "quantile_within", "ratio_difference", "refit_interval", "regression_terms",
+    "runs_for_half_width",
     "sample_inputs", "scatter_of", "share_difference", "share_estimate", "soil_total_effect", "subset_simulation",
     "unseen_limit", "upper_limit", "variance_shares", "wilson_interval",
 ]  # fmt: skip

@@ -10,7 +10,7 @@ import numpy as np
 
 from lithobrake.analysis import share_estimate
 from lithobrake.analysis.admissible_region import admissible_edge, verdict, with_grounds
-from lithobrake.analysis.comparisons import difference_bounds
+from lithobrake.analysis.paired_differences import difference_bounds
 from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.pipeline.answer.emulated_ends import Refits
 from lithobrake.pipeline.answer.journey_limit_states import rest_values

@@ -7,7 +7,7 @@ import pytest
 from scipy.special import ndtri
 
 from lithobrake.analysis import expected_half_width, share_difference
-from lithobrake.analysis.comparisons import difference_bounds
+from lithobrake.analysis.paired_differences import difference_bounds
 from lithobrake.analysis.paired_widths import beds_for_half_width, difference_half_width, half_width_on
 from lithobrake.vocabulary.estimate import Estimate
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from lithobrake.analysis import quantile_within, refit_interval
-from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.confidence import numbered_beds
 from lithobrake.analysis.control_variate import control_factor
+from lithobrake.analysis.paired_differences import difference_bounds
 from lithobrake.analysis.unseen_event import RunCounts, limit_of_runs, runs_by_bed
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import Rows

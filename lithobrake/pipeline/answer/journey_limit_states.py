@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from lithobrake import analysis
-from lithobrake.analysis.comparisons import difference_bounds
 from lithobrake.analysis.ground_spread import share_over_grounds
+from lithobrake.analysis.paired_differences import difference_bounds
 from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.analysis.unseen_event import runs_by_bed
 from lithobrake.files.reading import read_rows

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.analysis import PairedDifference, quantile_difference, share_difference
+from lithobrake.analysis import PairedDifference, quantile_difference, ratio_difference, share_difference
 from lithobrake.files.atomic import write_json
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.journey_limit_states import journeys_met
@@ -187,6 +187,9 @@ def _journey_answers(
     for name, words, unit, counts in numbers:
         values = [np.where(table.rests, table.numbers[name], np.nan)[:count] for table in tables]
         yield from _quantiles(name, words, unit, values, bed, why, counts=counts)
+        if not counts:
+            found = ratio_difference(values[0], values[1], bed, why=why)
+            yield f"{name}_ratio", _told(f"{words}, typical ratio of pairs at rest", unit, found)
 
 
 def _bounce_answers(
@@ -238,9 +241,9 @@ def _quantiles(
 def _told(words: str, unit: str, found: PairedDifference, *, is_fraction: bool = False) -> ComparedAnswer:
     # The comparison says why there are no intervals.
     first, second, difference = (one.without_reason for one in (found.first, found.second, found.difference))
-    saved = found.landings_saved
     return ComparedAnswer(
-        words, unit, is_fraction, first, second, difference, found.pairs, found.correlation, saved
+        words, unit, is_fraction, first, second, difference, found.pairs, found.correlation, found.landings_saved,
+        found.is_ratio,
     )  # fmt: skip
 
 

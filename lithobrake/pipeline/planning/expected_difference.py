@@ -15,10 +15,17 @@ from lithobrake.vocabulary.number_words import as_sentence, at_level, counted, n
 EXPECTED_CORRELATION = {
     "at_rest": (0.3, 0.1, 0.6),
     "returns": (0.5, 0.2, 0.9),
-    "time_s_median": (0.2, 0.0, 0.5),
-    "distance_median": (0.5, 0.1, 0.8),
+    "time_s_median": (0.4, 0.3, 0.7),
+    "time_s_ratio": (0.9, 0.8, 1.0),
+    "distance_median": (0.7, 0.5, 0.8),
+    "distance_ratio": (0.9, 0.8, 1.0),
 }
-WORDS = {"time_s_median": "time to rest, median", "distance_median": "distance from the aim point, median"}
+WORDS = {
+    "time_s_median": "time to rest, median",
+    "time_s_ratio": "time to rest, typical ratio",
+    "distance_median": "distance from the aim point, median",
+    "distance_ratio": "distance from the aim point, typical ratio",
+}
 
 
 @dataclass(frozen=True)

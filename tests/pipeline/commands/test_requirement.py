@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from lithobrake.analysis.comparisons import difference_bounds
+from lithobrake.analysis.paired_differences import difference_bounds
 from lithobrake.cli import app
 from lithobrake.pipeline import delivery_grid, find_requirement, grid_of_ranges, requirement_lines, write_requirement
 from lithobrake.pipeline.answer.emulated_ends import Refits

@@ -58,7 +58,7 @@ def test_both_half_widths_and_the_runs_that_one_asks_for(written: Written) -> No
     assert found.asked is not None
     assert found.asked.in_pairs < found.asked.unpaired
     assert found.asked.in_pairs == 4 * found.asked.beds_in_pairs
-    assert list(found.gains) == ["at_rest", "time_s_median", "distance_median"]
+    assert list(found.gains) == ["at_rest", "time_s_median", "time_s_ratio", "distance_median", "distance_ratio"]
     lines = "\n".join(plan_lines(plan))
     assert f"Difference to {two} (96 pairs on 24 beds): expected half-width of the 90 % interval" in lines
     assert f"For a half-width of 4 points: {found.asked.in_pairs} journeys on" in lines
