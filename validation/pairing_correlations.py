@@ -25,6 +25,7 @@ OF_GRAINS = ("speed_out", "elevation_out", "spin_out", "returns")
 OF_IMPACT = ("impact.speed", "impact.incidence_deg")
 OF_REBOUND = (*VELOCITY_OUT, "speed_out", "spin_out", "contact_duration")
 OF_JOURNEY = ("time_s", "distance", "way", "contacts", "path_length")
+CEILING = "speed +0.0001 %"
 LATEST = 3  # touchdowns, the last of which are the third and all later ones
 FEWEST = 8  # pairs of a correlation
 # Of these the logarithm: they vary over decades.
@@ -102,7 +103,6 @@ def of_journeys(pairs: Sequence[tuple[Row, Row]]) -> Row:
     rest = [[float(one["end"] == "at_rest") for one in pair] for pair in pairs]
     down = [pair for pair, ends in zip(pairs, rest, strict=True) if all(ends)]
     numbers = {name: [(a[name], b[name]) for a, b in down] for name in OF_JOURNEY}
-    sides = [[one["face"].strip("+-") for one in pair] for pair in down]
     return {
         "at_rest": correlation([(a, b) for a, b in rest]),
         "at_rest_of_each": [sum(ends) for ends in zip(*rest, strict=True)],
@@ -110,7 +110,7 @@ def of_journeys(pairs: Sequence[tuple[Row, Row]]) -> Row:
         **{f"{name}_median": by_median(values) for name, values in numbers.items()},
         "compared": compared(pairs),
         "same_face": sum(a["face"] == b["face"] for a, b in down),
-        "same_axis": sum(a == b for a, b in sides),
+        "same_face_by_chance": sum(a["face"] == b["face"] for a, _ in down for _, b in down) / max(len(down), 1),
         "both_at_rest": len(down),
     }
 
@@ -125,6 +125,17 @@ def compared(pairs: Sequence[tuple[Row, Row]]) -> Row:
         found[f"{name}_median"] = quantile_difference(*values.T, bed, 0.5)
         found[f"{name}_ratio"] = ratio_difference(*values.T, bed)
     return {name: {"r": one.correlation, "saved": one.landings_saved} for name, one in found.items()}
+
+
+def expected(options: Row, grounds: Row) -> Row:
+    """Mean and ends of the correlations of a comparison over options, but for the one that changes almost nothing.
+
+    Of the return fraction over first touchdowns that share impact point and attitude on another soil.
+    """
+    made = [option["journeys"]["compared"] for name, option in options.items() if name != CEILING]
+    of = {name: [one[name]["r"] for one in made] for name in (made[0] if made else ())}
+    of["returns"] = [ground["point and attitude"]["returns"]["r"] for ground in grounds.values()]
+    return {name: {"mean": sum(r) / len(r), "least": min(r), "most": max(r)} for name, r in of.items()}
 
 
 def on_one_bed(journeys: Sequence[Row]) -> Row:
@@ -155,19 +166,22 @@ def judged() -> Row:
     base = ends["none"]
     grains = read_rows(HERE / "grain_size.csv", dict.fromkeys(("ground", "way", "status"), str)
                        | dict.fromkeys(("block", *FACTORS, "twin", "bed"), int), _number)  # fmt: skip
+    grounds = {
+        f"{ground}, {way}": shared_numbers([row for row in grains if (row["ground"], row["way"]) == (ground, way)])
+        for ground, way in GRAINS
+    }
+    made = {
+        name: {
+            "contacts": by_contact(at["none"], at[name]),
+            "journeys": of_journeys([(base[number], row) for number, row in ends[name].items()]),
+        }
+        for name in options[1:]
+    }
     return {
-        "shared_at_first_touchdown": {
-            f"{ground}, {way}": shared_numbers([row for row in grains if (row["ground"], row["way"]) == (ground, way)])
-            for ground, way in GRAINS
-        },
+        "shared_at_first_touchdown": grounds,
         "bed_only": on_one_bed(list(base.values())),
-        "options": {
-            name: {
-                "contacts": by_contact(at["none"], at[name]),
-                "journeys": of_journeys([(base[number], row) for number, row in ends[name].items()]),
-            }
-            for name in options[1:]
-        },
+        "options": made,
+        "expected": expected(made, grounds),
     }
 
 

@@ -106,7 +106,8 @@ def caption(comparison: StudyComparison) -> str:
 def table_note(comparison: StudyComparison) -> str:
     return (
         f"With {intervals(comparison.level)}. Correlation: of the two runs of a pair. Landings saved: factor "
-        "by which an unpaired comparison needs more landings for the same interval."
+        "by which an unpaired comparison needs more landings for the same interval. Typical ratio: geometric mean of B "
+        "over A, less 1, over the pairs of which both landers come to rest."
     )
 
 

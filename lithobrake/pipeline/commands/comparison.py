@@ -189,7 +189,7 @@ def _journey_answers(
         yield from _quantiles(name, words, unit, values, bed, why, counts=counts)
         if not counts:
             found = ratio_difference(values[0], values[1], bed, why=why)
-            yield f"{name}_ratio", _told(f"{words}, typical ratio of pairs at rest", unit, found)
+            yield f"{name}_ratio", _told(f"{words}, typical ratio", unit, found)
 
 
 def _bounce_answers(
