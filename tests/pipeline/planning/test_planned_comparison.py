@@ -138,6 +138,12 @@ def test_one_bed_of_both_and_no_lander_are_refused(written: Written) -> None:
         planned(one, paper)
 
 
+def test_expected_correlations_are_those_of_the_experiment() -> None:
+    measured = json.loads((SCENARIOS.parent / "validation" / "pairing.json").read_text(encoding="utf-8"))["expected"]
+    rounded = {name: tuple(round(one[end], 1) for end in ("mean", "least", "most")) for name, one in measured.items()}
+    assert rounded == EXPECTED_CORRELATION
+
+
 FASTER = {"speed": {"distribution": "uniform", "lower": 0.08, "upper": 0.16}}
 
 
