@@ -10,8 +10,8 @@ from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth
 from lithobrake.study import Study
 from lithobrake.vocabulary.number_words import as_sentence, at_level, counted, number, percent, thousands
 
-# Correlation of the pairs before any have been made: mean, smallest and largest over a heavier lander, a faster delivery
-# and another soil (docs/howto/compare.md; validation/pairing.json).
+# Correlation of the pairs before any have been made: mean, smallest and largest over a heavier lander, a faster
+# delivery and another soil (docs/howto/compare.md; validation/pairing.json).
 EXPECTED_CORRELATION = {
     "at_rest": (0.5, 0.3, 0.7),
     "returns": (0.6, 0.3, 0.8),
