@@ -49,7 +49,16 @@ ROOMS = {
     "pipeline": (
         *("site", "study_folder", "folder_state", "design", "job", "runs", "first_touchdown"),
         *("expansion", "journeys", "sky_at_rest", "answer", "site_arrivals", "site_grid", "delivery_grid", "stages"),
-        *("outdated_files", "sequential_sampling", "inferred_study", "nowcast", "planning", "study_run", "commands"),
+        *(
+            "outdated_files",
+            "sequential_sampling",
+            "shared_numbers",
+            "inferred_study",
+            "nowcast",
+            "planning",
+            "study_run",
+            "commands",
+        ),
     ),
     "statements": (
         *("estimates", "labels", "ends", "captions", "touchdowns", "journeys", "grounds", "expansion", "limits"),

@@ -33,7 +33,12 @@ from lithobrake.analysis.output_estimates import (
     quantile_estimate,
     quantile_estimates,
 )
-from lithobrake.analysis.paired_difference import PairedDifference, quantile_difference, share_difference
+from lithobrake.analysis.paired_difference import (
+    PairedDifference,
+    quantile_difference,
+    ratio_difference,
+    share_difference,
+)
 from lithobrake.analysis.posterior import Observation, bed_shares, beds_statement
 from lithobrake.analysis.regions import DensityRegion, Ellipses, HighestDensity, dispersion_ellipses, highest_density
 from lithobrake.analysis.share_estimate import share_estimate
@@ -52,7 +57,8 @@ __all__ = [
     "direction_estimate", "dispersion_ellipses", "drawn_counts", "drawn_failures", "expected_half_width",
     "failure_inputs", "failure_probability", "half_width_of", "half_width_range", "highest_density", "identifiability",
     "infer", "mean_estimate", "next_run_count", "predictive_p_value", "quantile_difference", "quantile_estimate",
-    "quantile_estimates", "quantile_within", "refit_interval", "regression_terms", "runs_for_half_width",
+    "quantile_estimates", "quantile_within", "ratio_difference", "refit_interval", "regression_terms",
+    "runs_for_half_width",
     "sample_inputs", "scatter_of", "share_difference", "share_estimate", "soil_total_effect", "subset_simulation",
     "unseen_limit", "upper_limit", "variance_shares", "wilson_interval",
 ]  # fmt: skip

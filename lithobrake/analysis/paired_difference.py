@@ -1,4 +1,4 @@
-"""The difference between two studies paired by run, whatever became of the runs that are missing."""
+"""The difference between two studies paired by run, whatever became of missing runs, and their typical ratio."""
 
 import math
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lithobrake.analysis.confidence import Bounds, answers, numbered_beds
 from lithobrake.analysis.missing_runs import lost_runs
-from lithobrake.analysis.output_estimates import quantile_ends, quantile_estimate
+from lithobrake.analysis.output_estimates import mean_estimate, quantile_ends, quantile_estimate
 from lithobrake.analysis.share_estimate import share_estimate
 from lithobrake.vocabulary.array_types import Array, Labels
 from lithobrake.vocabulary.constants import FEWEST_BEDS_OF_CORRELATION
@@ -30,6 +30,7 @@ class PairedDifference:
     missing         share of the runs of each study of which it is not known what became of them
     if_missing      smallest and largest difference that these leave, without sampling error; None where nothing
                     limits one
+    is_ratio        whether difference and unpaired are of second over first less 1
     """
 
     first: Estimate
@@ -40,18 +41,21 @@ class PairedDifference:
     pairs: int
     missing: tuple[float, float]
     if_missing: Bounds | None
+    is_ratio: bool = False
 
     @property
     def landings_saved(self) -> float | None:
         """How many times the runs an unpaired comparison takes for an interval as narrow; None where there is none.
 
-        More runs narrow the sampling error alone, and not what missing runs leave open.
+        More runs narrow the sampling error alone, and not what missing runs leave open. Of a ratio by the widths of its
+        logarithm.
         """
         bounds = self.difference.bounds
         if self.unpaired is None or bounds is None or self.if_missing is None:
             return None
-        open_ = self.if_missing[1] - self.if_missing[0]
-        paired, unpaired = (one[1] - one[0] - open_ for one in (bounds, self.unpaired))
+        scale = np.log1p if self.is_ratio else np.asarray
+        open_, paired, unpaired = (float(np.ptp(scale(one))) for one in (self.if_missing, bounds, self.unpaired))
+        paired, unpaired = paired - open_, unpaired - open_
         return (unpaired / paired) ** 2 if paired > 0.0 else None
 
 
@@ -117,6 +121,49 @@ def quantile_difference(
         return _Answer(found, quantile_ends(values, probability, lost, counts=counts), below, lost, (-1.0, 0.0))
 
     return _difference(estimated, first, second, bed, missing)
+
+
+def ratio_difference(
+    first: ArrayLike,
+    second: ArrayLike,
+    bed: ArrayLike,
+    *,
+    why: str | None = None,
+    missing: tuple[ArrayLike, ArrayLike] | None = None,
+) -> PairedDifference:
+    """Typical ratio of a positive output [pair_count], second over first less 1, of the pairs that have both.
+
+    It is exp of the mean of log(second / first) over beds, which uses how far each pair differs; first and second are
+    the geometric means of these runs. NaN where a run has none or it is not above 0; UNKNOWN for fewer than two such
+    pairs. missing: as for `quantile_difference`; nothing limits the ratio of such a run, so with one there are no
+    bounds. why: a reason why the pairs give no interval. Source: [Cameron-2008] (errors from few clusters).
+    """
+    values = np.array([answers("first", first), answers("second", second)])
+    lost = [lost_runs(out, one) for out, one in zip(missing or (None, None), values, strict=True)]
+    shares = float(lost[0].mean()), float(lost[1].mean())
+    beds = numbered_beds(bed, values.shape[1])
+    values[:, ~(values > 0.0).all(axis=0)] = np.nan
+    both = np.isfinite(values).all(axis=0)
+    pairs = int(both.sum())
+    if pairs < 2:
+        return PairedDifference(UNKNOWN, UNKNOWN, UNKNOWN, None, None, pairs, shares, None, is_ratio=True)
+    (one, two), beds = np.log(values[:, both]), beds[both]
+    if why or len(np.unique(beds)) < 2 or max(shares) > 0.0:
+        found = [Estimate(float(part.mean()), None, None) for part in (one, two, two - one)]
+    else:
+        found = [mean_estimate(part, beds) for part in (one, two, two - one)]
+    apart, ratio = difference_bounds(found[0], found[1]), found[2].on_scale(math.expm1)
+    return PairedDifference(
+        first=found[0].on_scale(math.exp),
+        second=found[1].on_scale(math.exp),
+        difference=ratio,
+        correlation=_correlation(one - one.mean(), two - two.mean()),
+        unpaired=None if apart is None else (math.expm1(apart[0]), math.expm1(apart[1])),
+        pairs=pairs,
+        missing=shares,
+        if_missing=None if max(shares) > 0.0 else (ratio.value, ratio.value),
+        is_ratio=True,
+    )
 
 
 def _difference(

@@ -155,13 +155,39 @@ def plan(
         bool,
         typer.Option("--infer", help="Also report how many observed bounces halve each input's standard deviation."),
     ] = False,
+    against: Annotated[
+        Path | None,
+        typer.Option(
+            "--against",
+            metavar="OTHER.toml",
+            help="Also report how well the difference to this study, in runs/OTHER, will be known, run by run.",
+            show_default=False,
+        ),
+    ] = None,
+    half_width: Annotated[
+        float | None,
+        typer.Option(
+            "--half-width",
+            metavar="FRACTION",
+            help="With --against: also the runs that this half-width of the difference asks for (0.05: 5 points).",
+            show_default=False,
+        ),
+    ] = None,
     json: arguments.Json = False,
 ) -> None:
     """Print the runs of a study, their time and disk space, the expected half-width, and warnings. Runs nothing."""
     folder = arguments.study_folder(study, out)
-    from lithobrake.pipeline import plan_lines, plan_study
+    if against is None and half_width is not None:
+        raise ValueError("--half-width is that of a difference; name the other study with --against")
+    if against is not None and infer:
+        raise ValueError("--against and --infer are two questions; ask them one after the other")
+    from lithobrake.pipeline import plan_comparison, plan_lines, plan_study
 
-    found = plan_study(study, folder, workers, infers=infer)
+    if against is None:
+        found = plan_study(study, folder, workers, infers=infer)
+    else:
+        other = arguments.study_folder(against, None)
+        found = plan_comparison(study, folder, against, other, workers, half_width=half_width)
     arguments.tell_result(json, found.to_json(), plan_lines(found))
 
 

@@ -14,6 +14,7 @@ from .commands.one_lander import energy_gained as energy_gained
 from .commands.one_lander import follow_one as follow_one
 from .commands.one_lander import land_one as land_one
 from .commands.one_lander import landing_inputs as landing_inputs
+from .commands.planned_comparison import plan_comparison as plan_comparison
 from .commands.rare_landings import rare_failure as rare_failure
 from .commands.requirement import find_requirement as find_requirement
 from .commands.requirement import grid_of_ranges as grid_of_ranges

@@ -123,7 +123,8 @@ def write_comparison(comparison: StudyComparison, texts: Sequence[str], place: P
 def _draw(comparison: StudyComparison) -> "Figure":
     answers = [one for one in comparison.answers.values() if one.difference.is_known]
     fractions = [_shown(one, 100.0) for one in answers if one.is_fraction]
-    others = [_shown(one, 100.0 / abs(one.first.value)) for one in answers if not one.is_fraction and one.first.value]
+    numbers = [one for one in answers if not one.is_fraction and one.first.value]
+    others = [_shown(one, 100.0 if one.is_ratio else 100.0 / abs(one.first.value)) for one in numbers]
     return difference_figure([("percentage points", fractions), ("difference over the value of A [%]", others)])
 
 
@@ -137,7 +138,7 @@ def _comparison_table(comparison: StudyComparison) -> PageTable:
             f"{one.words} [{unit(one)}]" if unit(one) else one.words,
             bounded(one.first, factor(one)),
             bounded(one.second, factor(one)),
-            bounded(one.difference, factor(one), signed=True),
+            compared.difference(one) if one.is_ratio else bounded(one.difference, factor(one), signed=True),
             str(one.pairs),
             "none" if one.correlation is None else two_digits(one.correlation),
             "none" if one.landings_saved is None else two_digits(one.landings_saved),

@@ -208,7 +208,7 @@ class ComparedAnswer:
     second: Number
     """of the second study, likewise"""
     difference: Number
-    """second less first; null where one of them is"""
+    """second less first; null where one of them is; with is_ratio second over first less 1, without a unit"""
     pairs: int
     """pairs of which both runs have an answer"""
     missing: tuple[float, float]
@@ -217,6 +217,8 @@ class ComparedAnswer:
     """of the two runs of a pair; null where an answer does not vary"""
     landings_saved: float | None
     """how many times the landings an unpaired comparison takes for an interval as narrow; null without an interval"""
+    is_ratio: bool = False
+    """whether it is the typical ratio of pairs that have both, of which first and second are the geometric means"""
 
 
 @dataclass(frozen=True)

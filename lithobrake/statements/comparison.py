@@ -10,16 +10,16 @@ from lithobrake.vocabulary.number_words import as_sentence, counted, fixed, inte
 PERCENT = 100.0
 
 
-def factor(answer: ComparedAnswer) -> float:
+def factor(answer: ComparedAnswer, *, of_difference: bool = False) -> float:
     """What numbers of an answer are multiplied by where they are shown."""
-    return PERCENT if answer.is_fraction else 1.0
+    return PERCENT if answer.is_fraction or (answer.is_ratio and of_difference) else 1.0
 
 
 def unit(answer: ComparedAnswer, *, of_difference: bool = False) -> str:
-    """The unit of what is shown: fractions in per cent, their differences in percentage points."""
+    """The unit of what is shown: fractions and ratios in per cent, differences of fractions in percentage points."""
     if answer.is_fraction:
         return "points" if of_difference else "%"
-    return answer.unit
+    return "%" if answer.is_ratio and of_difference else answer.unit
 
 
 def bounded(one: Estimate, times: float, *, signed: bool = False) -> str:
@@ -32,7 +32,7 @@ def bounded(one: Estimate, times: float, *, signed: bool = False) -> str:
 
 def difference(answer: ComparedAnswer) -> str:
     """The difference with its interval and unit."""
-    words = bounded(answer.difference, factor(answer), signed=True)
+    words = bounded(answer.difference, factor(answer, of_difference=True), signed=True)
     return f"{words} {unit(answer, of_difference=True)}".strip()
 
 
@@ -56,8 +56,9 @@ def sentence(comparison: StudyComparison, name: str) -> str:
     """An answer and its difference in a sentence."""
     answer = comparison.answers[name]
     first, second = (f"{bounded(one, factor(answer))} {unit(answer)}".strip() for one in (answer.first, answer.second))
+    less = "B over A" if answer.is_ratio else "B minus A"
     return as_sentence(
-        f"{answer.words}: A {first}, B {second}; B minus A {difference(answer)}: {verdict(answer)} "
+        f"{answer.words}: A {first}, B {second}; {less} {difference(answer)}: {verdict(answer)} "
         f"({intervals(comparison.level)}, {comparison.of}{unknown(answer)})"
     )
 
@@ -113,7 +114,8 @@ def caption(comparison: StudyComparison) -> str:
 def table_note(comparison: StudyComparison) -> str:
     return (
         f"With {intervals(comparison.level)}. Correlation: of the two runs of a pair. Landings saved: factor "
-        "by which an unpaired comparison needs more landings for the same interval."
+        "by which an unpaired comparison needs more landings for the same interval. Typical ratio: geometric mean of B "
+        "over A, less 1, over the pairs of which both landers come to rest."
     )
 
 
@@ -122,7 +124,7 @@ def tiles(comparison: StudyComparison, most: int) -> Sequence[tuple[str, str, st
     told = [one for one in list(comparison.answers.values())[1:most] if one.difference.is_known]
     return [
         (
-            shown(one.difference.value, factor(one), signed=True),
+            shown(one.difference.value, factor(one, of_difference=True), signed=True),
             unit(one, of_difference=True),
             f"{one.words}: {verdict(one)}",
         )

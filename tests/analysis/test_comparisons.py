@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtri
 
-from lithobrake.analysis import best_choice, quantile_difference, quantile_within, share_difference
+from lithobrake.analysis import best_choice, quantile_difference, quantile_within, ratio_difference, share_difference
 from lithobrake.analysis.paired_difference import pair_correlation
 
 BEDS = 24
@@ -126,6 +126,40 @@ def test_intervals_hold_the_truth(correlation: float) -> None:
         shares += share.difference.lower <= 0.1 <= share.difference.upper
         medians += median.difference.lower <= math.expm1(0.3) <= median.difference.upper
     assert min(shares, medians) >= 0.83 * 150
+
+
+@pytest.mark.parametrize("correlation", [0.0, 0.5, 0.9])
+def test_the_interval_of_a_typical_ratio_holds_it(correlation: float) -> None:
+    """300 studies of lognormal numbers: 0.9 within three standard errors."""
+    random, held, saved = np.random.default_rng(8), 0, []
+    for _ in range(300):
+        one, two = latent(random, correlation)
+        found = ratio_difference(np.exp(one), 1.3 * np.exp(two), BED_OF_RUN)
+        assert found.difference.lower is not None
+        assert found.difference.upper is not None
+        held += found.difference.lower <= 0.3 <= found.difference.upper
+        saved.append(found.landings_saved)
+    assert abs(held / 300 - 0.9) < 3 * math.sqrt(0.09 / 300)
+    # What is left of the variance of a difference of logarithms.
+    assert np.median(saved) == pytest.approx(1.0 / (1.0 - correlation), rel=0.15)
+
+
+def test_a_typical_ratio_is_of_the_pairs_that_have_both_numbers() -> None:
+    one, two = np.array([1.0, 2.0, np.nan, 0.0, 8.0]), np.array([2.0, 4.0, 1.0, 5.0, 16.0])
+    found = ratio_difference(one, two, [0, 1, 1, 2, 2])
+    assert (found.pairs, found.is_ratio) == (3, True)
+    assert (found.first.value, found.second.value) == pytest.approx((16.0 ** (1 / 3), 2.0 * 16.0 ** (1 / 3)))
+    assert found.difference.value == pytest.approx(1.0)
+    for bed, why in (([0] * 5, None), ([0, 1, 1, 2, 2], "one impact point")):
+        without = ratio_difference(one, two, bed, why=why)
+        assert (without.difference.lower, without.unpaired, without.landings_saved) == (None, None, None)
+        assert without.difference.value == pytest.approx(1.0)
+    # Nothing limits the ratio of a run of which it is not known what became of it.
+    unknown = ratio_difference(one, two, [0, 1, 1, 2, 2], missing=(np.isnan(one), np.zeros(5, dtype=bool)))
+    assert (unknown.missing, unknown.difference.bounds, unknown.landings_saved) == ((0.2, 0.0), None, None)
+    assert unknown.difference.value == pytest.approx(1.0)
+    none = ratio_difference(one, np.full(5, np.nan), [0, 1, 1, 2, 2])
+    assert (none.pairs, none.difference.is_known) == (0, False)
 
 
 def test_pairs_that_go_together_save_landings() -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from lithobrake.analysis import PairedDifference, quantile_difference, share_difference
+from lithobrake.analysis import PairedDifference, quantile_difference, ratio_difference, share_difference
 from lithobrake.files.atomic import write_json
 from lithobrake.pipeline.answer.journey_ends import JourneyTable
 from lithobrake.pipeline.answer.journey_limit_states import journeys_met
@@ -19,6 +19,7 @@ from lithobrake.pipeline.answer.run_answers import unknown_runs, why_no_interval
 from lithobrake.pipeline.commands.running_estimates import CAPTURED
 from lithobrake.pipeline.first_touchdown.run_flights import RunFlights
 from lithobrake.pipeline.runs.run_table import DesignRuns
+from lithobrake.pipeline.shared_numbers import COMMON, SharedNumbers, pair_count, values_by_lander
 from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder
 from lithobrake.results import StudyResults, open_study
 from lithobrake.results.questions import ComparedAnswer, StudyComparison
@@ -27,40 +28,30 @@ from lithobrake.statements.comparison import lines, other_beds, pairs
 from lithobrake.study import Study
 from lithobrake.vocabulary.file_names import STUDY_FILE
 from lithobrake.vocabulary.limit_state import LimitState
-from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN, counted
+from lithobrake.vocabulary.number_words import HIGH, LEVEL, MEDIAN
 from lithobrake.vocabulary.outcomes import JourneyEnd, TouchdownOutcome
-from lithobrake.vocabulary.quantities import ORIENTATION, PLACE, TOUCHDOWN
+from lithobrake.vocabulary.quantities import TOUCHDOWN
 
-# What the runs of a pair have in common, with what a reader calls it; a study has the columns of what it draws.
-COMMON = {
-    "bed": "bed",
-    **dict.fromkeys(PLACE, "impact point"),
-    "impact.azimuth_deg": "azimuth",
-    **dict.fromkeys(ORIENTATION, "attitude"),
-}
 # Numbers of a bed that tell it from every other.
 OF_BED = ("solid_fraction", "surface_height_m")
 OUTPUTS = ("speed_out", "elevation_out", "spin_out", "contact_duration", "penetration", "energy_lost")
 # Tables of a study file that say how much of it is made, not of what.
 EFFORT = ("title", "seed", "bed.bed_count", "design.run_count", "journey.count")
 COPIED = ("impact", "site")
-# The two names that a sentence has for the studies.
-FIRST, SECOND = "A", "B"
 
 
 @dataclass(frozen=True)
 class OneStudy:
     """A study of the two: its folder, results, study file, and what it draws, run by run or journey by journey.
 
-    bed: of each run [run_count]; columns of COMMON [run_count], NaN for a lander that never touched down.
-    number: row of each first touchdown among these [touchdown_count].
+    shared: what its landers have in common with those of the other; number: lander of each first touchdown
+    [touchdown_count].
     """
 
     path: Path
     results: StudyResults
     study: Study
-    bed: np.ndarray
-    columns: Mapping[str, np.ndarray]
+    shared: SharedNumbers
     number: np.ndarray
 
     @classmethod
@@ -74,13 +65,17 @@ class OneStudy:
         runs = DesignRuns.load(folder, "drawn")
         # A lander that is flown to the ground and misses it has a journey, and no run.
         bed, number = JourneyTable.load(folder).bed, runs.inputs["journey"].astype(int)
-        columns = {name: _placed(runs.inputs[name], number, len(bed)) for name in COMMON if name in runs.inputs}
-        return cls(path, results, source.study, bed.astype(int), columns | {"bed": bed.astype(float)}, number)
+        columns = {
+            name: values_by_lander(runs.inputs[name], number, len(bed)) for name in COMMON if name in runs.inputs
+        }
+        touchdowns = source.study.journey.touchdowns
+        shared = SharedNumbers(str(path), touchdowns, columns | {"bed": bed.astype(float)})
+        return cls(path, results, source.study, shared, number)
 
     @property
-    def run_count(self) -> int:
-        """How many runs or journeys it has."""
-        return len(self.bed)
+    def bed(self) -> np.ndarray:
+        """Of each run, [run_count]."""
+        return self.shared.columns["bed"].astype(int)
 
     @property
     def folder(self) -> FinishedFolder:
@@ -89,20 +84,13 @@ class OneStudy:
 
     def by_lander(self, values: np.ndarray) -> np.ndarray:
         """Values of the first touchdowns [touchdown_count] as [run_count], NaN for a lander without one."""
-        return _placed(values, self.number, self.run_count)
-
-
-def _placed(values: np.ndarray, rows: np.ndarray, count: int) -> np.ndarray:
-    """Values in these rows of `count`, NaN in all others."""
-    placed = np.full(count, np.nan)
-    placed[rows] = values
-    return placed
+        return values_by_lander(values, self.number, self.shared.run_count)
 
 
 def compare_studies(first: Path, second: Path) -> StudyComparison:
     """Compare two studies that ran. Raises ValueError for two that cannot be paired, with the reason."""
     one, two = OneStudy.open(first), OneStudy.open(second)
-    count = _paired_count(one, two)
+    count = pair_count(one.shared, two.shared)
     bed = one.bed[:count]
     why = why_no_interval(one.study) or why_no_interval(two.study)
     found = dict(_answers((one, two), count, bed, why))
@@ -145,28 +133,6 @@ def comparison_lines(comparison: StudyComparison) -> list[str]:
     return lines(comparison)
 
 
-def _paired_count(one: OneStudy, two: OneStudy) -> int:
-    """How many pairs there are. Raises ValueError where the runs of one number differ in what they must share."""
-    limits = [each.study.journey.touchdowns for each in (one, two)]
-    if limits[0] != limits[1]:
-        ways = ["to rest" if limit is None else f"for {counted(limit, 'touchdown')}" for limit in limits]
-        said = " and ".join(f"{each.path} follows landers {way}" for each, way in zip((one, two), ways, strict=True))
-        raise ValueError(f"{said}; compare studies with the same journey.touchdowns")
-    count = min(one.run_count, two.run_count)
-    for name, words in COMMON.items():
-        if (name in one.columns) != (name in two.columns):
-            raise _unlike(one, two, f"only one of them draws the {words} of each run")
-        if name not in one.columns:
-            continue
-        a, b = (each.columns[name][:count] for each in (one, two))
-        unlike = np.flatnonzero((a != b) & np.isfinite(a) & np.isfinite(b))
-        if len(unlike):
-            run = unlike[0]
-            said = f"run {run} has {words} {a[run]:g} in {FIRST} and {b[run]:g} in {SECOND} ({name})"
-            raise _unlike(one, two, said)
-    return count
-
-
 def _other_beds(one: OneStudy, two: OneStudy, used: np.ndarray) -> str | None:
     """What to say where beds of one number are not the same bed, as other grains or another gravity leave them."""
     tables = [each.results.beds for each in (one, two)]
@@ -178,14 +144,6 @@ def _other_beds(one: OneStudy, two: OneStudy, used: np.ndarray) -> str | None:
     if not count:
         return None
     return other_beds(count, len(used))
-
-
-def _unlike(one: OneStudy, two: OneStudy, reason: str) -> ValueError:
-    return ValueError(
-        f"{one.path} ({FIRST}) and {two.path} ({SECOND}) cannot be paired: {reason}; give both the same seed, "
-        "bed.bed_count, bed.width and uncertain inputs (their ranges may differ and be narrow), so that run r of "
-        "both lands on the same bed at the same impact point"
-    )
 
 
 def _answers(
@@ -231,9 +189,11 @@ def _journey_answers(
     )
     for name, words, unit, counts in numbers:
         values = [np.where(table.rests, table.numbers[name], np.nan)[:count] for table in tables]
-        yield from _quantiles(
-            name, words, unit, values, bed, why, [table.unknown[:count] for table in tables], counts=counts
-        )
+        lost = [table.unknown[:count] for table in tables]
+        yield from _quantiles(name, words, unit, values, bed, why, lost, counts=counts)
+        if not counts:
+            found = ratio_difference(values[0], values[1], bed, why=why, missing=(lost[0], lost[1]))
+            yield f"{name}_ratio", _told(f"{words}, typical ratio", unit, found)
 
 
 def _bounce_answers(
@@ -293,9 +253,9 @@ def _quantiles(
 def _told(words: str, unit: str, found: PairedDifference, *, is_fraction: bool = False) -> ComparedAnswer:
     # The comparison says why there are no intervals.
     first, second, difference = (one.without_reason for one in (found.first, found.second, found.difference))
-    saved = found.landings_saved
     return ComparedAnswer(
-        words, unit, is_fraction, first, second, difference, found.pairs, found.missing, found.correlation, saved
+        words, unit, is_fraction, first, second, difference, found.pairs, found.missing, found.correlation,
+        found.landings_saved, found.is_ratio,
     )  # fmt: skip
 
 

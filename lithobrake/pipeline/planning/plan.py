@@ -6,6 +6,7 @@ from typing import Any
 
 from lithobrake.pipeline.inferred_study import ExpectedInference
 from lithobrake.pipeline.planning import planned_ground
+from lithobrake.pipeline.planning.expected_difference import ExpectedDifference
 from lithobrake.pipeline.planning.expected_steps import PlannedRuns
 from lithobrake.pipeline.planning.expected_time import Span
 from lithobrake.pipeline.planning.expected_width import ExpectedHalfWidth, RunsABed
@@ -51,6 +52,7 @@ class Plan:
     soils           of regions of the body; None where it has one soil
     delivery        where and when landers that are delivered as states reach the ground; None for others
     inference       what observed bounces would say of the inputs; None where that is not asked
+    difference      how well the difference to another study will be known; None where that is not asked
     """
 
     study: str
@@ -76,6 +78,7 @@ class Plan:
     kinds: tuple[planned_ground.PlannedKind, ...] = ()
     delivery: str | None = None
     inference: ExpectedInference | None = None
+    difference: ExpectedDifference | None = None
 
     @property
     def time(self) -> Span:
@@ -113,6 +116,7 @@ def plan_lines(plan: Plan) -> list[str]:
     size, free = bytes_in_words(sum(plan.bytes.values())), bytes_in_words(plan.free_bytes)
     lines += [f"Disk: about {size} when finished; {free} are free."]
     lines += plan.half_width.lines() if plan.half_width else []
+    lines += plan.difference.lines() if plan.difference else []
     lines += plan.inference.lines() if plan.inference else []
     lines += [f"Warnings: {len(plan.warnings) or 'none'}."]
     return lines + [f"  {number}. {warning}" for number, warning in enumerate(plan.warnings, start=1)]

@@ -2,9 +2,11 @@
 
 import shlex
 import shutil
-from collections.abc import Set
-from dataclasses import replace
+from collections.abc import Mapping, Set
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from lithobrake.campaign import available_cores
 from lithobrake.pipeline.design.descents import descents_in_words
@@ -49,14 +51,42 @@ def plan_study(path: Path, out: Path, worker_count: int | None = None, *, infers
     Raises ValueError for a study file that is refused, a folder of something else, a mesh that cannot be read, a ledger
     that is none.
     """
-    source = StudySource.read(path)
-    study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
-    refuse_others_folder(source, out)
-    design = DrawnDesign(study)
-    Soils(design.site).refuse()
-    refuse_hidden_orbiter(design.site)
-    plan = plan_of(grown(design, folder), study.title or path.stem, folder, worker_count)
-    return replace(plan, inference=_expected_inference(plan, study, path)) if infers else plan
+    planned = PlannedStudy.of(path, out, worker_count)
+    plan = planned.plan
+    return replace(plan, inference=_expected_inference(plan, planned.design.study, path)) if infers else plan
+
+
+@dataclass(frozen=True)
+class PlannedStudy:
+    """A study that may be run: its file, folder, tables, what it draws, and the processes that it has."""
+
+    path: Path
+    folder: Path
+    tables: Mapping[str, Any]
+    design: DrawnDesign
+    worker_count: int | None
+
+    @classmethod
+    def of(cls, path: Path, out: Path, worker_count: int | None = None) -> "PlannedStudy":
+        """Read and check a study file and its folder; raises as plan_study."""
+        source = StudySource.read(path)
+        study, folder = with_site_gravity(source.study), StudyFolder.only_read(out)
+        refuse_others_folder(source, out)
+        design = DrawnDesign(study)
+        Soils(design.site).refuse()
+        refuse_hidden_orbiter(design.site)
+        return cls(path, out, source.tables, grown(design, folder), worker_count)
+
+    @property
+    def name(self) -> str:
+        """Its file, for messages."""
+        return str(self.path)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """What it will do."""
+        title = self.design.study.title or self.path.stem
+        return plan_of(self.design, title, StudyFolder.only_read(self.folder), self.worker_count)
 
 
 def _expected_inference(plan: Plan, study: Study, path: Path) -> ExpectedInference:

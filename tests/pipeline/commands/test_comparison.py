@@ -161,6 +161,11 @@ def test_differences_are_those_of_the_pairs(pair: tuple[Path, Path]) -> None:
     medians = [np.median(table["time_s"][:36][rest]) for table, rest in zip((slow, fast), rests, strict=True)]
     assert time.difference.value == pytest.approx(medians[1] - medians[0])
     assert time.difference.lower > 0.0
+    both = rests[0] & rests[1]
+    times = [table["time_s"][:36][both] for table in (slow, fast)]
+    ratio = found.answers["time_s_ratio"]
+    assert (ratio.is_ratio, ratio.pairs, ratio.unit) == (True, both.sum(), "s")
+    assert ratio.difference.value == pytest.approx(np.exp(np.log(times[1] / times[0]).mean()) - 1.0)
     assert "36 pairs on 12 beds" in found.of
     assert list(found.settings) == ["delivery.speed"]
 
@@ -206,6 +211,7 @@ def test_the_command_writes_a_page_and_its_numbers(pair: tuple[Path, Path], tmp_
     assert said.exit_code == 0, said.output
     assert f"A: {pair[0]}" in said.stdout
     assert "Time to rest, median: A " in said.stdout
+    assert re.search(r"Time to rest, typical ratio: A .* s; B over A \+\d.* %: larger in B", said.stdout)
     numbers = json.loads((out / "comparison.json").read_text())
     assert results_in(StudyComparison, numbers) == compare_studies(*pair)
     page = (out / "index.html").read_text()
