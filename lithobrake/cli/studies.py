@@ -177,10 +177,7 @@ def plan(
 ) -> None:
     """Print the runs of a study, their time and disk space, the expected half-width, and warnings. Runs nothing."""
     folder = arguments.study_folder(study, out)
-    if against is None and half_width is not None:
-        raise ValueError("--half-width is that of a difference; name the other study with --against")
-    if against is not None and infer:
-        raise ValueError("--against and --infer are two questions; ask them one after the other")
+    _refuse_unlike(infer, against, half_width)
     from lithobrake.pipeline import plan_comparison, plan_lines, plan_study
 
     if against is None:
@@ -189,6 +186,14 @@ def plan(
         other = arguments.study_folder(against, None)
         found = plan_comparison(study, folder, against, other, workers, half_width=half_width)
     arguments.tell_result(json, found.to_json(), plan_lines(found))
+
+
+def _refuse_unlike(infer: bool, against: Path | None, half_width: float | None) -> None:
+    """Raise ValueError for options of `plan` that do not go together."""
+    if against is None and half_width is not None:
+        raise ValueError("--half-width is that of a difference; name the other study with --against")
+    if against is not None and infer:
+        raise ValueError("--against and --infer are two questions; ask them one after the other")
 
 
 study_command("run", "Run a study from its file to its report.", arguments.RUN, until="report")

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from lithobrake.analysis.paired_difference import difference_bounds
 from scipy.special import ndtri
 
 from lithobrake.analysis import expected_half_width, share_difference
+from lithobrake.analysis.paired_difference import difference_bounds
 from lithobrake.analysis.paired_widths import beds_for_half_width, difference_half_width, half_width_on
 from lithobrake.vocabulary.estimate import Estimate
 
