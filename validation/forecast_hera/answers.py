@@ -36,7 +36,7 @@ HERE = Path(__file__).parent
 FIRST_EDITION = HERE / "editions" / "2026-11-26"
 FORECAST = "forecast.json"
 # What decides, beside the package, how the landers of a study file come down.
-SCRIPTS = ("branches.py", "descent.py", "grounds.py", "landers.py")
+SCRIPTS = ("assumptions.py", "branches.py", "descent.py", "grounds.py", "landers.py")
 INPUTS = ("mass_kg", *FIRST)
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 DRAWS, SEED = 4000, 1

@@ -5,6 +5,8 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+from assumptions import FIRST as FIRST_ASSUMPTIONS
+from assumptions import SEED_STEP, Assumptions
 from branches import Branch
 from grounds import RESTITUTION, DrawnRestitution
 from harness import Row
@@ -14,11 +16,11 @@ from lithobrake.pipeline.job import StudyProgress
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults, Table
-from lithobrake.study import StudySource
+from lithobrake.study import Study, StudySource
+from lithobrake.study.ground_beds import grounds
 
 TABLE, RUNS = "landers.csv", "runs.json"
-KINDS = dict.fromkeys(("lander", "branch", "ground", "end", "face"), str)
-COUNTS = {"soil": 240, "hard": 400}  # landers of all branches
+KINDS = dict.fromkeys(("lander", "branch", "ground", "law", "kind", "end", "face"), str)
 # Columns of the first touchdown, by what the table calls them.
 FIRST = {
     "speed": "impact.speed", "incidence_deg": "impact.incidence_deg",
@@ -34,25 +36,48 @@ OWN = (
 )  # fmt: skip
 
 
-def follow(branch: Branch, ground: str, count: int, work: Path, workers: int | None, shown: StudyProgress) -> list[Row]:
+def follow(
+    branch: Branch, ground: str, count: int, work: Path, workers: int | None, shown: StudyProgress,
+    assumptions: Assumptions = FIRST_ASSUMPTIONS,
+) -> list[Row]:  # fmt: skip
     """A row for each lander of a branch on soil or hard ground, with its part of `count` landers of all branches.
 
-    They are followed in a folder of work; one that has them by the same code is only read.
+    They are followed in a folder of work for each law of restitution; one that has them by the same code is only read.
     """
-    tables, model = branch.tables(count), None
-    if ground == "hard":
-        tables["lander"]["restitution"], model = RESTITUTION, DrawnRestitution()
-    source = StudySource.of_tables(tables, model and function_identity(model))
-    folder = work / folder_name(branch, ground)
-    run_study(source, folder, until="runs", worker_count=workers, model=model, shown=shown)
-    study = StudyResults(folder)
-    mass = Site(source.study).sampled(study.journeys.row_count)["mass"]
-    return rows_of(study, {"lander": branch.lander, "branch": branch.name, "ground": ground}, mass)
+    rows = []
+    for place, (law, tables) in enumerate(assumptions.studies(branch, ground, count)):
+        model = None
+        if ground == "hard":
+            tables["lander"]["restitution"], model = RESTITUTION, DrawnRestitution()
+        source = StudySource.of_tables(tables, model and function_identity(model))
+        folder = work / folder_name(branch, ground, law)
+        run_study(source, folder, until="runs", worker_count=workers, model=model, shown=shown)
+        results = StudyResults(folder)
+        mass = Site(source.study).sampled(results.journeys.row_count)["mass"]
+        words = {"lander": branch.lander, "branch": branch.name, "ground": ground}
+        own = rows_of(results, words, mass)
+        if assumptions.laws:
+            own = [with_ground(row, law, place, source.study) for row in own]
+        rows += own
+    return rows
 
 
-def folder_name(branch: Branch, ground: str) -> str:
+def folder_name(branch: Branch, ground: str, law: str = "") -> str:
     """The folder of a study in that of all."""
-    return f"{branch.folder}_{ground}"
+    return "_".join(one for one in (branch.folder, ground, law) if one)
+
+
+def with_ground(row: Row, law: str, place: int, study: Study) -> Row:
+    """A row with its law of restitution, the place of this among the laws, and the ground of its bed.
+
+    Numbers of beds become those of one list of all laws. Hard ground has no law, kind and size.
+    """
+    of_bed = grounds(study)
+    ground = {} if not of_bed else of_bed[int(row["bed"])]._asdict()
+    return {
+        **row, "bed": int(row["bed"]) + place * SEED_STEP, "law": law, "kind": ground.get("kind", ""),
+        "grain_size_m": float(ground.get("size", np.nan)),
+    }  # fmt: skip
 
 
 def rows_of(study: StudyResults, words: Row, mass: np.ndarray) -> list[Row]:
