@@ -1,8 +1,8 @@
 """What the landers of an edition stand on beside their branches: the ground, laws of restitution, and landers' parts.
 
 "first": stones of about 0.2 m, restitutions that are the same at all speeds, boxes. "unknown ground": each bed is a
-ground of its own, of the preset of Dimorphos (docs/howto/ground.md); a third of the landers by each law of restitution;
-Milani with its wings. Hard ground is the same in both.
+ground of its own, of the preset of Dimorphos (docs/howto/ground.md), a third of them by each law of restitution; Milani
+with its wings. Hard ground is the same in both.
 """
 
 import tomllib
@@ -11,13 +11,16 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from branches import SCENARIOS, STUDY, Branch, changed
+from measured_branches import GROUND
 from measurements import Measurement
 
-FIRST_NAME = "first"
+from lithobrake.study.ground_presets import GROUND_PRESETS
+
 # Files of landers with parts that some assumptions read.
 PARTS = {"milani": "milani_with_wings"}
 # Sizes of grains come from the ground, and so do width and number.
-OPEN_GROUND = {"ground": "dimorphos", **dict.fromkeys(("bed.grain_count", "bed.width", "bed.diameter"))}
+PRESET = GROUND_PRESETS["dimorphos"]
+OPEN_GROUND = dict.fromkeys(("bed.grain_count", "bed.width", "bed.diameter"))
 # A contact of soft grains yields at the speed at which rock does with its strength times (E soft / E)^0.8
 # (docs/what_the_model_leaves_out.md): the weakest and the strongest ordinary chondrites, 6 MPa at 1 GPa and 260 MPa at
 # 50 GPa [Space-Resources-1992], at the middle of the moduli of the studies.
@@ -25,69 +28,101 @@ SOFT = 6.3e5  # Pa
 STRENGTHS = [strength * (SOFT / modulus) ** 0.8 for strength, modulus in ((6e6, 1e9), (2.6e8, 5e10))]
 # Granite has the restitution of the studies at speeds up to 1.5 m/s [Durda-2011], the structure of MASCOT at 0.1 m/s.
 SPEEDS = (0.1, 1.5)
-LAWS: Mapping[str, STUDY] = MappingProxyType({
-    "constant": {},
-    "yields": {
-        "grain.young_modulus": SOFT,
-        "grain.yield_strength": {"distribution": "log_uniform", "lower": STRENGTHS[0], "upper": STRENGTHS[1]},
-    },
-    "viscoelastic": {
-        "grain.restitution_speed": {"distribution": "log_uniform", "lower": SPEEDS[0], "upper": SPEEDS[1]},
-    },
-})  # fmt: skip
-# Between seeds of the laws, more than there are branches.
-SEED_STEP = 100
+RANGES: STUDY = {
+    "yield_strength": {"distribution": "log_uniform", "lower": STRENGTHS[0], "upper": STRENGTHS[1]},
+    "restitution_speed": {"distribution": "log_uniform", "lower": SPEEDS[0], "upper": SPEEDS[1]},
+}
+OFF = dict.fromkeys(RANGES, 0.0)
+# Materials of the grains by each law of restitution, where they differ from those that all beds draw.
+LAWS: Mapping[str, STUDY] = MappingProxyType(
+    {
+        "constant": OFF,
+        "yields": {"young_modulus": SOFT, "restitution_speed": 0.0},
+        "viscoelastic": {"yield_strength": 0.0},
+    }
+)
+# Grains draw a strength and a speed, which their kind of ground may put to 0; the hull has neither, so the grains' count.
+BOTH_LAWS = {
+    **{f"grain.{key}": law for key, law in RANGES.items()}, **{f"lander.{key}": value for key, value in OFF.items()},
+}  # fmt: skip
+# Between kind and law in the name of a kind of a study.
+BETWEEN = "_"
+LANDERS_A_BED = 2
+# From the seeds of the first landers to these: of thirty steps that with which the beds are nearest to the weights.
+SEED_STEP = 1000
 
 
 @dataclass(frozen=True)
 class Assumptions:
     """Assumptions of that name.
 
-    counts: landers of all branches by ground. soil: keys of a study on soil that differ from its file; laws: the same
-    of each law of restitution, in equal parts of the landers, none where there is one law; parts: names of study files
-    whose parts a lander has; landers_a_bed: on soil with several laws.
+    counts: landers of all branches by ground. is_ground_unknown: whether each bed on soil is a ground of its own, with
+    a law of restitution. parts: names of study files whose parts a lander has.
     """
 
     name: str
     counts: Mapping[str, int]
-    soil: STUDY = field(default_factory=dict)
-    laws: Mapping[str, STUDY] = field(default_factory=dict)
+    is_ground_unknown: bool = False
     parts: Mapping[str, str] = field(default_factory=dict)
-    landers_a_bed: int = 2
 
-    def studies(self, branch: Branch, ground: str, count: int) -> list[tuple[str, STUDY]]:
-        """Each law of restitution and the tables of its study, with a branch's part of `count` landers."""
+    def study(self, branch: Branch, ground: str, count: int, measurements: Iterable[Measurement] = ()) -> STUDY:
+        """The tables of a study with a branch's part of `count` landers.
+
+        measurements: of which the weights of the kinds of ground count; the branch has the others.
+        """
         tables = branch.tables(count)
-        if ground == "hard" or not self.laws:
-            return [("", tables)]
-        own = {**self.soil, **self.part_changes(branch.lander)}
-        number = max(self.landers_a_bed, round(branch.weight * count / len(self.laws)))
-        found = []
-        for place, (law, changes) in enumerate(self.laws.items(), 1):
-            counts = {
-                "seed": tables["seed"] + place * SEED_STEP, "journey.count": number,
-                "bed.bed_count": max(2, round(number / self.landers_a_bed)),
-            }  # fmt: skip
-            found.append((law, changed(tables, {**own, **changes, **counts})))
-        return found
+        if ground == "hard" or not self.is_ground_unknown:
+            return tables
+        changes = {
+            **OPEN_GROUND, **BOTH_LAWS, **self.part_changes(branch.lander), "ground": unknown_ground(kind_weights(measurements)),
+            "seed": tables["seed"] + SEED_STEP, "bed.bed_count": round(tables["journey"]["count"] / LANDERS_A_BED),
+        }  # fmt: skip
+        return changed(tables, changes)
 
     def part_changes(self, lander: str) -> STUDY:
         """The key of a lander's parts, where it has any."""
-        if lander not in self.parts:
-            return {}
-        text = (SCENARIOS / f"{self.parts[lander]}.toml").read_text(encoding="utf-8")
-        return {"lander.part": tomllib.loads(text)["lander"]["part"]}
+        return lander_parts(self.parts[lander]) if lander in self.parts else {}
 
     def refuse_unused(self, measurements: Iterable[Measurement]) -> None:
-        """Raise ValueError for a measurement of a key that the studies on soil do not have."""
+        """Raise ValueError for a measurement of what the studies on soil do not have."""
         for one in measurements:
-            if self.soil and one.of.key.startswith("bed."):
+            if not self.is_ground_unknown and one.quantity == GROUND:
+                raise ValueError(
+                    f"{one.quantity} has no part in landers of the {self.name} assumptions, which have one ground; "
+                    f"allowed: landers of {UNKNOWN_GROUND.name}; take those"
+                )
+            if self.is_ground_unknown and one.of.key.startswith("bed."):
                 raise ValueError(
                     f"{one.quantity} has no part in landers of {self.name}, whose beds draw the size of their grains; "
-                    "allowed: weights of the quantity ground; take them"
+                    f"allowed: weights of the quantity {GROUND}; take them"
                 )
 
 
-FIRST = Assumptions(FIRST_NAME, {"soil": 240, "hard": 400})
-UNKNOWN_GROUND = Assumptions("unknown ground", {"soil": 120, "hard": 400}, OPEN_GROUND, LAWS, PARTS)
+def lander_parts(name: str) -> STUDY:
+    """The key of a lander's parts as a study file has them."""
+    text = (SCENARIOS / f"{name}.toml").read_text(encoding="utf-8")
+    return {"lander.part": tomllib.loads(text)["lander"]["part"]}
+
+
+def kind_weights(measurements: Iterable[Measurement]) -> dict[str, float]:
+    """Probabilities of the kinds of ground of Dimorphos, measured or those of its preset."""
+    for one in measurements:
+        if one.quantity == GROUND and one.weights is not None:
+            return dict(one.weights)
+    return {name: float(one["weight"]) for name, one in PRESET["kind"].items()}
+
+
+def unknown_ground(weights: Mapping[str, float]) -> STUDY:
+    """The table of the ground: each kind of the preset with each law of restitution, in equal parts."""
+    kinds = {
+        f"{name}{BETWEEN}{law}": {**PRESET["kind"][name], "weight": weight / len(LAWS), "grain": of}
+        for name, weight in weights.items()
+        for law, of in LAWS.items()
+        if weight > 0.0
+    }
+    return {**PRESET, "kind": kinds}
+
+
+FIRST = Assumptions("first", {"soil": 240, "hard": 400})
+UNKNOWN_GROUND = Assumptions("unknown ground", {"soil": 120, "hard": 400}, True, PARTS)
 ASSUMPTIONS = {one.name: one for one in (FIRST, UNKNOWN_GROUND)}

@@ -26,7 +26,7 @@ from assumptions import ASSUMPTIONS, FIRST, Assumptions
 from branches import LANDERS, SCENARIOS, Branch
 from compare import comparison
 from harness import Row, command_line, origin, read_document, write_document
-from landers import RUNS, TABLE, follow, write_landers
+from landers import RUNS, TABLE, folder_name, follow, write_landers
 from measured_branches import simulated_branches
 from measurements import DRAWN, Measurement, read_measurements
 from write_page import write
@@ -63,12 +63,18 @@ def expected_cpu(branch: Branch, ground: str, assumptions: Assumptions) -> float
 
 
 def run_part(
-    branch: Branch, ground: str, count: int, work: Path, workers: int | None, assumptions: Assumptions = FIRST
+    branch: Branch,
+    ground: str,
+    count: int,
+    work: Path,
+    workers: int | None,
+    assumptions: Assumptions = FIRST,
+    measurements: Sequence[Measurement] = (),
 ) -> tuple[list[Row], Row | None]:
     """The landers of a branch on a ground, and what they cost; None where they were there already."""
     started, cpu, watch = time.perf_counter(), cpu_seconds(), Watch()
-    is_new = not any(work.glob(f"{branch.folder}_{ground}*"))
-    rows = follow(branch, ground, count, work, workers, watch, assumptions)
+    is_new = not (work / folder_name(branch, ground)).exists()
+    rows = follow(branch, ground, count, work, workers, watch, assumptions, measurements)
     if not watch.worked:
         return rows, None
     cost = {"cpu_s": round(cpu_seconds() - cpu, 1), "wall_s": round(time.perf_counter() - started, 1)}
@@ -87,7 +93,7 @@ def run_all(
     for number, (branch, ground) in enumerate(parts, 1):
         name, started = f"{branch.lander}, {branch.name}, {ground}", time.perf_counter()
         print(f"{number} of {len(parts)}: {name}", flush=True)
-        rows, cost = run_part(branch, ground, assumptions.counts[ground], work, workers, assumptions)
+        rows, cost = run_part(branch, ground, assumptions.counts[ground], work, workers, assumptions, measurements)
         landers += rows
         left -= expected_cpu(branch, ground, assumptions)
         if cost is not None:

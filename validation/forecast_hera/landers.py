@@ -5,11 +5,12 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+from assumptions import BETWEEN, Assumptions
 from assumptions import FIRST as FIRST_ASSUMPTIONS
-from assumptions import SEED_STEP, Assumptions
 from branches import Branch
 from grounds import RESTITUTION, DrawnRestitution
 from harness import Row
+from measurements import Measurement
 
 from lithobrake.pipeline import run_study
 from lithobrake.pipeline.job import StudyProgress
@@ -38,46 +39,39 @@ OWN = (
 
 def follow(
     branch: Branch, ground: str, count: int, work: Path, workers: int | None, shown: StudyProgress,
-    assumptions: Assumptions = FIRST_ASSUMPTIONS,
+    assumptions: Assumptions = FIRST_ASSUMPTIONS, measurements: Iterable[Measurement] = (),
 ) -> list[Row]:  # fmt: skip
     """A row for each lander of a branch on soil or hard ground, with its part of `count` landers of all branches.
 
-    They are followed in a folder of work for each law of restitution; one that has them by the same code is only read.
+    They are followed in a folder of work; one that has them by the same code is only read.
     """
-    rows = []
-    for place, (law, tables) in enumerate(assumptions.studies(branch, ground, count)):
-        model = None
-        if ground == "hard":
-            tables["lander"]["restitution"], model = RESTITUTION, DrawnRestitution()
-        source = StudySource.of_tables(tables, model and function_identity(model))
-        folder = work / folder_name(branch, ground, law)
-        run_study(source, folder, until="runs", worker_count=workers, model=model, shown=shown)
-        results = StudyResults(folder)
-        mass = Site(source.study).sampled(results.journeys.row_count)["mass"]
-        words = {"lander": branch.lander, "branch": branch.name, "ground": ground}
-        own = rows_of(results, words, mass)
-        if assumptions.laws:
-            own = [with_ground(row, law, place, source.study) for row in own]
-        rows += own
-    return rows
+    tables, model = assumptions.study(branch, ground, count, measurements), None
+    if ground == "hard":
+        tables["lander"]["restitution"], model = RESTITUTION, DrawnRestitution()
+    source = StudySource.of_tables(tables, model and function_identity(model))
+    folder = work / folder_name(branch, ground)
+    run_study(source, folder, until="runs", worker_count=workers, model=model, shown=shown)
+    study = StudyResults(folder)
+    mass = Site(source.study).sampled(study.journeys.row_count)["mass"]
+    rows = rows_of(study, {"lander": branch.lander, "branch": branch.name, "ground": ground}, mass)
+    return with_grounds(rows, source.study) if assumptions.is_ground_unknown else rows
 
 
-def folder_name(branch: Branch, ground: str, law: str = "") -> str:
+def folder_name(branch: Branch, ground: str) -> str:
     """The folder of a study in that of all."""
-    return "_".join(one for one in (branch.folder, ground, law) if one)
+    return f"{branch.folder}_{ground}"
 
 
-def with_ground(row: Row, law: str, place: int, study: Study) -> Row:
-    """A row with its law of restitution, the place of this among the laws, and the ground of its bed.
-
-    Numbers of beds become those of one list of all laws. Hard ground has no law, kind and size.
-    """
-    of_bed = grounds(study)
-    ground = {} if not of_bed else of_bed[int(row["bed"])]._asdict()
-    return {
-        **row, "bed": int(row["bed"]) + place * SEED_STEP, "law": law, "kind": ground.get("kind", ""),
-        "grain_size_m": float(ground.get("size", np.nan)),
-    }  # fmt: skip
+def with_grounds(rows: Iterable[Row], study: Study) -> list[Row]:
+    """Rows with kind of ground, law of restitution and size of the grains [m] of their beds; hard ground has none."""
+    of_beds, found = grounds(study), []
+    for row in rows:
+        kind, law, size = "", "", np.nan
+        if of_beds:
+            of = of_beds[int(row["bed"])]
+            (kind, _, law), size = of.kind.partition(BETWEEN), of.size
+        found.append({**row, "kind": kind, "law": law, "grain_size_m": size})
+    return found
 
 
 def rows_of(study: StudyResults, words: Row, mass: np.ndarray) -> list[Row]:
