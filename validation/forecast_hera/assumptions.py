@@ -41,7 +41,7 @@ LAWS: Mapping[str, STUDY] = MappingProxyType(
         "viscoelastic": {"yield_strength": 0.0},
     }
 )
-# Grains draw a strength and a speed, which their kind of ground may put to 0; the hull has neither, so the grains' count.
+# Grains draw a strength and a speed, which their kind of ground may put to 0; the hull has none, and theirs count.
 BOTH_LAWS = {
     **{f"grain.{key}": law for key, law in RANGES.items()}, **{f"lander.{key}": value for key, value in OFF.items()},
 }  # fmt: skip
@@ -49,7 +49,7 @@ BOTH_LAWS = {
 BETWEEN = "_"
 LANDERS_A_BED = 2
 # From the seeds of the first landers to these: of thirty steps that with which the beds are nearest to the weights.
-SEED_STEP = 1000
+SEED_STEP = 2200
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,8 @@ class Assumptions:
         if ground == "hard" or not self.is_ground_unknown:
             return tables
         changes = {
-            **OPEN_GROUND, **BOTH_LAWS, **self.part_changes(branch.lander), "ground": unknown_ground(kind_weights(measurements)),
+            **OPEN_GROUND, **BOTH_LAWS, **self.part_changes(branch.lander),
+            "ground": unknown_ground(kind_weights(measurements)),
             "seed": tables["seed"] + SEED_STEP, "bed.bed_count": round(tables["journey"]["count"] / LANDERS_A_BED),
         }  # fmt: skip
         return changed(tables, changes)
@@ -124,5 +125,5 @@ def unknown_ground(weights: Mapping[str, float]) -> STUDY:
 
 
 FIRST = Assumptions("first", {"soil": 240, "hard": 400})
-UNKNOWN_GROUND = Assumptions("unknown ground", {"soil": 120, "hard": 400}, True, PARTS)
+UNKNOWN_GROUND = Assumptions("unknown ground", {"soil": 100, "hard": 400}, True, PARTS)
 ASSUMPTIONS = {one.name: one for one in (FIRST, UNKNOWN_GROUND)}

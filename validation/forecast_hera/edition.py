@@ -4,8 +4,9 @@
 
 The newest landers without measurements that an edition has, or those that forecast.py simulated to a folder, are
 weighted by what was measured. The edition is a folder of its date: the measurements; forecast.json, the answers, what
-each measurement changed, and what landers of other assumptions (assumptions.py) did; a table of the predicted landings of each lander and ground, for `lithobrake score`; and SHA256SUMS, the hashes
-of its contents and of its landers. It is never written over. Last the pages of the forecast are written.
+each measurement changed, and what landers of other assumptions (assumptions.py) did; a table of the predicted landings
+of each lander and ground, for `lithobrake score`; and SHA256SUMS, the hashes of its contents and of its landers. It is
+never written over. Last the pages of the forecast are written.
 """
 
 import csv
@@ -227,9 +228,9 @@ def main() -> None:
         raise SystemExit(str(error)) from error
     print(f"{target}: {digest(target / SUMS)}")
     if options.editions.resolve() == EDITIONS:
-        from write_editions import DOCS, write
+        from write_editions import DOCS, write_all
 
-        write(EDITIONS, DOCS)
+        write_all(EDITIONS, DOCS)
 
 
 if __name__ == "__main__":

@@ -6,8 +6,8 @@ Each is a pair of studies which differ in one choice: controlled descents to the
 that turns with its orbit, as a mesh must in a study; the ground is that of the edition but for its finest grains,
 FINEST, on which long booms are affordable. Landers of a pair arrive alike, on ground of the same kind and size, so
 differences are taken lander by lander, with intervals over beds. With --shape, that shape stands for the ellipsoid:
-moved to its centre of mass, turned to its principal axes, scaled to the same volume. Writes effects.csv, a line for each lander, and effects.json as each pair ends. What is in --work is not
-followed again.
+moved to its centre of mass, turned to its principal axes, scaled to the same volume. Writes effects.csv, a line for
+each lander, and effects.json as each pair ends. What is in --work is not followed again.
 """
 
 import sys

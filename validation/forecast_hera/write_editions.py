@@ -1,5 +1,7 @@
 """Write the pages of the forecast, docs/forecast_hera.md and docs/forecast_hera_editions.md, and the picture.
 
+With an edition on unknown ground also its own page (write_unknown_ground.py).
+
     python validation/forecast_hera/write_editions.py
 
 The last step of edition.py. The page of the first edition, docs/forecast_hera_2026_11_26.md, is not written again.
@@ -15,11 +17,13 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 import numpy as np
+import write_unknown_ground
 from answers import FIRST_EDITION, FORECAST, HERE, digest
+from assumptions import FIRST, UNKNOWN_GROUND
 from branches import LANDERS
 from changes import broad_sides, changes
 from drawing import figure
-from edition import EDITIONS, SUMS, editions
+from edition import EDITIONS, SUMS, assumed_landers, editions
 from harness import Row, command_line, read_document, read_rows
 from landers import KINDS, TABLE
 from measurements import QUANTITIES, measurement_of
@@ -42,6 +46,12 @@ DIFFERENCES = {
     "at_rest": ("at rest [percentage points]", 100.0), "time_s": ("median time to rest [min]", 1.0 / 60.0),
     "broad_side": ("on a broad side [percentage points]", 100.0), "shift_m": ("shift of the mean place [m]", 1.0),
 }  # fmt: skip
+# The ground of the landers of an edition by its assumptions: in a table, and in a sentence of the first page.
+GROUND_WORDS = {FIRST.name: "stones of 0.2 m", UNKNOWN_GROUND.name: "unknown: gravel, stones or rock"}
+LANDINGS = {
+    FIRST.name: "on rubble",
+    UNKNOWN_GROUND.name: "on ground that has not been measured: gravel, stones up to 1 m, or bare rock",
+}
 
 
 def names_of(landers: Answers) -> list[str]:
@@ -102,15 +112,38 @@ def side_by_side(found: Sequence[tuple[str, Answers]]) -> str:
             region = of["regions"][0]
             area = f"{plain(region['area_m2'], 3)} ({plain(region['lower'], 3)}-{plain(region['upper'], 3)})"
             rows.append([
-                name.capitalize(), date, f"{effective:.0f}", percent(of["ends"]["at_rest"]),
+                name.capitalize(), date, GROUND_WORDS[assumptions_in(document)], f"{effective:.0f}",
+                percent(of["ends"]["at_rest"]),
                 median_of(of["at_rest"]["time_s"], 60.0), median_of(of["at_rest"]["distance"], 1.0), area,
                 f"{100 * broad(document['landers'], name):.0f} %",
             ])  # fmt: skip
     heads = (
-        "lander", "edition", "effective number of landers", "at rest", "median time to rest [min]",
+        "lander", "edition", "ground", "effective number of landers", "at rest", "median time to rest [min]",
         "median distance from the aim point [m]", "region of 50 % [m2]", "on a broad side",
     )  # fmt: skip
     return table(heads, rows)
+
+
+def assumptions_in(document: Answers) -> str:
+    """The name of the assumptions of an edition; the first one does not state it."""
+    return str(document.get("assumptions", FIRST.name))
+
+
+def against_table(found: Sequence[tuple[str, Answers]]) -> str:
+    """What other assumptions changed, of each edition that has them."""
+    rows = []
+    for date, document in found:
+        of = document.get("against", {})
+        rows += [
+            [
+                name.capitalize(),
+                date,
+                of["edition"],
+                *(difference(one[key], size) for key, (_, size) in DIFFERENCES.items()),
+            ]
+            for name, one in of.get("landers", {}).items()
+        ]
+    return table(("lander", "edition", "less that of", *(words for words, _ in DIFFERENCES.values())), rows)
 
 
 def median_of(one: dict[str, float], size: float) -> str:
@@ -151,7 +184,7 @@ def measured_part(found: Sequence[tuple[str, Answers]]) -> str:
     """Measurements of all editions, and what each changed; words where there are none."""
     listed = [(date, one) for date, document in found for one in document.get("measurements", [])]
     if not listed:
-        return "No edition has a measurement yet: the first one stands on the assumptions alone."
+        return "No edition has a measurement yet: they stand on assumptions alone."
     sources = table(
         ("edition", "measurement", "published", "source"),
         [[date, one["words"], one["date"], one["source"]] for date, one in listed],
@@ -221,17 +254,27 @@ def write(folder: Path, docs: Path) -> None:
     write_page(
         "forecast_hera", docs, date=date, year=date[:4], chances=chances_table(landers), hash=sums[date],
         contradictions=contradictions_table(landers), basis=basis(document), version=lithobrake.__version__,
+        landings=LANDINGS[assumptions_in(document)],
     )  # fmt: skip
     hashes = table(("edition", "SHA-256 of its file SHA256SUMS"), [[name, f"`{one}`"] for name, one in sums.items()])
     write_page(
-        "forecast_hera_editions", docs, editions=side_by_side(found), measured=measured_part(found),
+        "forecast_hera_editions", docs, editions=side_by_side(found), against=against_table(found),
+        measured=measured_part(found),
         expected=changes_table(expected_changes(), ""), quantities=quantities_table(), hashes=hashes, date=date,
     )  # fmt: skip
 
 
+def write_all(folder: Path, docs: Path) -> None:
+    """Write these pages, and that of the newest edition on unknown ground, of the editions in a folder."""
+    write(folder, docs)
+    newest = assumed_landers(folder)
+    if assumptions_in(read_document(newest / FORECAST)) == UNKNOWN_GROUND.name:
+        write_unknown_ground.write(newest, docs)
+
+
 def main() -> None:
     command_line(__doc__).parse_args()
-    write(EDITIONS, DOCS)
+    write_all(EDITIONS, DOCS)
 
 
 if __name__ == "__main__":
