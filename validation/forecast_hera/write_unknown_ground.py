@@ -166,10 +166,14 @@ def draw_groups(landers: Answers, first: Answers, path: Path) -> None:
         for ax in axes:
             for line in (1.5, 4.5):
                 ax.axhline(line, color=RULE, lw=0.8)
-        axes[0].set(xlim=(0, 100), xlabel="at rest on Dimorphos [%]")
+        axes[0].set(xlim=(40, 100), xlabel="at rest on Dimorphos [%]")
         axes[1].set_xlabel("median time from the first contact to rest [min]")
         axes[1].set_xlim(left=0.0)
         drawn.legend(loc="outside lower center", ncols=2)
+
+
+def down_words(of: Row, lander: str) -> str:
+    return f"{of['at_rest']} of {of['landers']} of {lander.capitalize()}"
 
 
 def effect_parts(effects: Answers) -> dict[str, object]:
@@ -213,6 +217,7 @@ def write(edition: Path, docs: Path) -> None:
         strengths=" to ".join(f"{one / 1e3:.0f}" for one in STRENGTHS),
         speeds=" to ".join(f"{one:g}" for one in SPEEDS), soft=SOFT / 1e6,
         counts=" and ".join(f"{landers[name]['soil']['landers']} of {name.capitalize()}" for name in landers),
+        down=" and ".join(down_words(landers[name]["soil"]["touched_down"], name) for name in landers),
         beds=sum(one["beds"] for one in landers[LANDERS[0]]["soil"]["by_ground"]),
         cost=f"{runs['cpu_s'] / 60.0:.0f}", code=document["sha256"]["code"], results=document["sha256"]["results"],
         **effect_parts(effects), **left_out_parts(landers),
