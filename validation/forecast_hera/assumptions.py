@@ -1,23 +1,20 @@
-"""What the landers of an edition stand on beside their branches: the ground, laws of restitution, and landers' parts.
+"""What the landers of an edition stand on beside their branches: the ground, and laws of restitution.
 
 "first": stones of about 0.2 m, restitutions that are the same at all speeds, boxes. "unknown ground": each bed is a
-ground of its own, of the preset of Dimorphos (docs/howto/ground.md), a third of them by each law of restitution; Milani
-with its wings. Hard ground is the same in both.
+ground of its own, of the preset of Dimorphos (docs/howto/ground.md), a third of them by each law of restitution. Hard
+ground is the same in both.
 """
 
-import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import MappingProxyType
 
-from branches import SCENARIOS, STUDY, Branch, changed
+from branches import STUDY, Branch, changed
 from measured_branches import GROUND
 from measurements import Measurement
 
 from lithobrake.study.ground_presets import GROUND_PRESETS
 
-# Files of landers with parts that some assumptions read.
-PARTS = {"milani": "milani_with_wings"}
 # Sizes of grains come from the ground, and so do width and number.
 PRESET = GROUND_PRESETS["dimorphos"]
 OPEN_GROUND = dict.fromkeys(("bed.grain_count", "bed.width", "bed.diameter"))
@@ -57,13 +54,12 @@ class Assumptions:
     """Assumptions of that name.
 
     counts: landers of all branches by ground. is_ground_unknown: whether each bed on soil is a ground of its own, with
-    a law of restitution. parts: names of study files whose parts a lander has.
+    a law of restitution.
     """
 
     name: str
     counts: Mapping[str, int]
     is_ground_unknown: bool = False
-    parts: Mapping[str, str] = field(default_factory=dict)
 
     def study(self, branch: Branch, ground: str, count: int, measurements: Iterable[Measurement] = ()) -> STUDY:
         """The tables of a study with a branch's part of `count` landers.
@@ -74,15 +70,10 @@ class Assumptions:
         if ground == "hard" or not self.is_ground_unknown:
             return tables
         changes = {
-            **OPEN_GROUND, **BOTH_LAWS, **self.part_changes(branch.lander),
-            "ground": unknown_ground(kind_weights(measurements)),
+            **OPEN_GROUND, **BOTH_LAWS, "ground": unknown_ground(kind_weights(measurements)),
             "seed": tables["seed"] + SEED_STEP, "bed.bed_count": round(tables["journey"]["count"] / LANDERS_A_BED),
         }  # fmt: skip
         return changed(tables, changes)
-
-    def part_changes(self, lander: str) -> STUDY:
-        """The key of a lander's parts, where it has any."""
-        return lander_parts(self.parts[lander]) if lander in self.parts else {}
 
     def refuse_unused(self, measurements: Iterable[Measurement]) -> None:
         """Raise ValueError for a measurement of what the studies on soil do not have."""
@@ -97,12 +88,6 @@ class Assumptions:
                     f"{one.quantity} has no part in landers of {self.name}, whose beds draw the size of their grains; "
                     f"allowed: weights of the quantity {GROUND}; take them"
                 )
-
-
-def lander_parts(name: str) -> STUDY:
-    """The key of a lander's parts as a study file has them."""
-    text = (SCENARIOS / f"{name}.toml").read_text(encoding="utf-8")
-    return {"lander.part": tomllib.loads(text)["lander"]["part"]}
 
 
 def kind_weights(measurements: Iterable[Measurement]) -> dict[str, float]:
@@ -125,5 +110,5 @@ def unknown_ground(weights: Mapping[str, float]) -> STUDY:
 
 
 FIRST = Assumptions("first", {"soil": 240, "hard": 400})
-UNKNOWN_GROUND = Assumptions("unknown ground", {"soil": 100, "hard": 400}, True, PARTS)
+UNKNOWN_GROUND = Assumptions("unknown ground", {"soil": 100, "hard": 400}, True)
 ASSUMPTIONS = {one.name: one for one in (FIRST, UNKNOWN_GROUND)}

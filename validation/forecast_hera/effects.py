@@ -11,6 +11,7 @@ each lander, and effects.json as each pair ends. What is in --work is not follow
 """
 
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,8 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 import numpy as np
 from answers import HERE, digest
-from assumptions import OPEN_GROUND, PARTS, PRESET, lander_parts
-from branches import STUDY, branches, changed
+from assumptions import OPEN_GROUND, PRESET
+from branches import SCENARIOS, STUDY, branches, changed
 from changes import broad_sides, change
 from forecast import cpu_seconds
 from harness import Row, command_line, origin, write_document
@@ -36,10 +37,16 @@ from lithobrake.study import StudySource
 
 TABLE, EFFECTS = "effects.csv", "effects.json"
 FINEST = 0.25  # m
-LANDERS_OF_PAIR, BEDS, SEED = 24, 12, 2600
+LANDERS_OF_PAIR, BEDS, SEED = 16, 8, 2600
 BOOMS, WINGS, SHAPE = "four booms of 1.5 m", "two wings", "shape before DART"
 # Each lander's plain study, and those that differ from it.
 BOX = "box"
+
+
+def lander_parts(name: str) -> STUDY:
+    """The key of a lander's parts as a study file has them."""
+    text = (SCENARIOS / f"{name}.toml").read_text(encoding="utf-8")
+    return {"lander.part": tomllib.loads(text)["lander"]["part"]}
 
 
 def partner() -> STUDY:
@@ -58,7 +65,7 @@ def pairs(shape: STUDY | None) -> list[tuple[str, str, STUDY, STUDY]]:
     """Each effect: its name, the lander, and the keys of the study without and with it."""
     found = [
         (BOOMS, "juventas", {}, lander_parts("juventas_with_booms")),
-        (WINGS, "milani", {}, lander_parts(PARTS["milani"])),
+        (WINGS, "milani", {}, lander_parts("milani_with_wings")),
     ]  # fmt: skip
     if shape is not None:
         found = [(SHAPE, lander, {}, shape) for lander in ("juventas", "milani")] + found

@@ -134,7 +134,7 @@ def main() -> None:
     landers, costs = run_all(options.work, options.workers or None, measurements, assumptions)
     write_landers(out / TABLE, landers)
     totals = {key: round(sum(one[key] for one in costs)) for key in ("cpu_s", "wall_s")}
-    studies = {name: digest(SCENARIOS / f"{name}.toml") for name in (*LANDERS, *assumptions.parts.values())}
+    studies = {name: digest(SCENARIOS / f"{name}.toml") for name in LANDERS}
     made = {**totals, "code_sha256": digest(*package_files()), "studies_sha256": studies, "studies": costs}
     words = f'forecast.py --work FOLDER --assumptions "{assumptions.name}"'
     write_document(

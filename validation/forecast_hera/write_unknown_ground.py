@@ -185,6 +185,7 @@ def effect_parts(effects: Answers) -> dict[str, object]:
         "pair_landers": of[BOOMS]["after"]["landers"], "pair_beds": of[BOOMS]["beds"],
         "boom_cost": f"{cost_ratio(effects['cpu_s'], 'juventas', BOOMS):.0f}",
         "boom_rest": difference(booms["at_rest"], 100.0), "boom_time": difference(booms["time_s"], 1.0 / 60.0),
+        "wing_rest": difference(wings["at_rest"], 100.0), "wing_time": difference(wings["time_s"], 1.0 / 60.0),
         "wing_side": difference(wings["broad_side"], 100.0), "shape_rest": difference(shape["at_rest"], 100.0),
         "shape_time": difference(shape["time_s"], 1.0 / 60.0), "facets": effects["facets"],
         "shape_sha": effects["shape_sha256"],
