@@ -197,3 +197,30 @@ def test_measurements_weigh_the_newest_landers_without_any(tmp_path: Path) -> No
         for name in (*names, "forecast.json"):
             shutil.copy(FIRST / "forecast.json", own / name)
     assert assumed_landers(tmp_path).name == "2027-02-01"
+
+
+def test_the_tangle_of_an_outline_about_the_far_side_of_its_map_is_one_point() -> None:
+    """A square of latitude and longitude whose corner was passed four times with teeth between; others stay."""
+    from write_editions import without_tangle
+
+    corner = [-50.0, 0.0]
+    teeth = [corner, [-40.0, 1.0], corner, [-42.0, 2.0], corner, corner]
+    side = [[-20.0, 10.0], [10.0, 20.0], [20.0, -10.0], [-20.0, -20.0]]
+    found = without_tangle(np.array([*teeth, *side, corner]))
+    assert found.tolist() == [corner, *side, corner]
+    plain = np.array([*side, side[0]])
+    assert without_tangle(plain) is plain
+
+
+def test_pairs_that_are_all_alike_leave_an_interval() -> None:
+    """None of 16 pairs differs: a difference of 0 within some per cent; 4 of 16 only after: a quarter."""
+    from effects import rest_change
+
+    before = [{"end": "at_rest" if number % 4 else "escaped", "bed": number // 2} for number in range(16)]
+    same = rest_change(before, before)
+    assert same["value"] == 0.0
+    assert -0.12 < same["lower"] < -0.005
+    assert 0.005 < same["upper"] < 0.12
+    more = rest_change(before, [{**row, "end": "at_rest"} for row in before])
+    assert more["value"] == pytest.approx(0.25)
+    assert 0.05 < more["lower"] < 0.25 < more["upper"] < 0.5

@@ -12,6 +12,7 @@ each lander, and effects.json as each pair ends. What is in --work is not follow
 
 import sys
 import tomllib
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +20,12 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 import numpy as np
-from answers import HERE, digest
+from answers import CORRELATION, DRAWS, HERE, digest
 from assumptions import OPEN_GROUND, PRESET
 from branches import SCENARIOS, STUDY, branches, changed
 from changes import broad_sides, change
 from forecast import cpu_seconds
-from harness import Row, command_line, origin, write_document
+from harness import Row, command_line, origin, read_document, write_document
 from landers import rows_of, write_landers
 from variants import BRANCH, mesh_changes
 
@@ -35,11 +36,12 @@ from lithobrake.results import StudyResults
 from lithobrake.smallbody import Shape, dimorphos
 from lithobrake.study import StudySource
 
+COMMAND = "effects.py --work FOLDER --shape FILE.obj"
 TABLE, EFFECTS = "effects.csv", "effects.json"
 FINEST = 0.25  # m
 LANDERS_OF_PAIR, BEDS, SEED = 16, 8, 2600
 BOOMS, WINGS, SHAPE = "four booms of 1.5 m", "two wings", "shape before DART"
-# Each lander's plain study, and those that differ from it.
+# Each lander's plain study.
 BOX = "box"
 
 
@@ -61,15 +63,13 @@ def partner() -> STUDY:
     return {"site.partner_body": body}
 
 
-def pairs(shape: STUDY | None) -> list[tuple[str, str, STUDY, STUDY]]:
-    """Each effect: its name, the lander, and the keys of the study without and with it."""
-    found = [
-        (BOOMS, "juventas", {}, lander_parts("juventas_with_booms")),
-        (WINGS, "milani", {}, lander_parts("milani_with_wings")),
+def pairs(shape: STUDY | None) -> list[tuple[str, str, STUDY]]:
+    """Each effect: its name, the lander, and the keys of the study with it."""
+    shapes = [] if shape is None else [(SHAPE, lander, shape) for lander in ("juventas", "milani")]
+    return [
+        *shapes, (BOOMS, "juventas", lander_parts("juventas_with_booms")),
+        (WINGS, "milani", lander_parts("milani_with_wings")),
     ]  # fmt: skip
-    if shape is not None:
-        found = [(SHAPE, lander, {}, shape) for lander in ("juventas", "milani")] + found
-    return found
 
 
 def tables(lander: str, changes: STUDY) -> STUDY:
@@ -83,16 +83,17 @@ def tables(lander: str, changes: STUDY) -> STUDY:
     return with_ground | {"ground": {**PRESET, "finest": FINEST}}
 
 
-def followed(name: str, lander: str, changes: STUDY, work: Path, workers: int | None) -> tuple[list[Row], float]:
-    """The landers of a study and the CPU time that it took [s], 0 where they were there."""
+def followed(name: str, lander: str, changes: STUDY, folder: Path, costs: Row, workers: int | None) -> list[Row]:
+    """The landers of a study in a folder of work; costs gets its CPU time [s] where they were not there."""
     source, cpu = StudySource.of_tables(tables(lander, changes)), cpu_seconds()
-    folder = work / f"{lander}_{name}".replace(" ", "-")
-    is_new = not folder.exists()
-    run_study(source, folder, until="runs", worker_count=workers, shown=Silent())
-    study = StudyResults(folder)
-    words = {"lander": lander, "branch": BRANCH, "ground": "soil"}
+    own = folder / f"{lander}_{name}".replace(" ", "-")
+    is_new = not own.exists()
+    run_study(source, own, until="runs", worker_count=workers, shown=Silent())
+    study = StudyResults(own)
+    if is_new:
+        costs[f"{lander}: {name}"] = round(cpu_seconds() - cpu, 1)
     mass = Site(source.study).sampled(study.journeys.row_count)["mass"]
-    return rows_of(study, words, mass), cpu_seconds() - cpu if is_new else 0.0
+    return rows_of(study, {"lander": lander, "branch": BRANCH, "ground": "soil"}, mass)
 
 
 def compared(before: list[Row], after: list[Row], lander: str) -> dict[str, Any]:
@@ -106,7 +107,22 @@ def compared(before: list[Row], after: list[Row], lander: str) -> dict[str, Any]
             "time_s": float(np.median([row["time_s"] for row in rests])),
         }  # fmt: skip
 
-    return {"before": told(before), "after": told(after), "change": change(before, after, lander)}
+    found = {**change(before, after, lander), "at_rest": rest_change(before, after)}
+    return {"before": told(before), "after": told(after), "change": found}
+
+
+def rest_change(before: list[Row], after: list[Row]) -> dict[str, float]:
+    """Difference of the fractions at rest of the same landers, and its interval of 90 %.
+
+    Pairs rest in both, in one or in none of the studies: a Dirichlet posterior with one pair spread evenly over the
+    four, and counts divided by their design effect, so that few pairs that are all alike have an interval.
+    """
+    both = [(one["end"] == "at_rest", other["end"] == "at_rest") for one, other in zip(before, after, strict=True)]
+    counts = np.array([both.count(case) for case in product((True, False), repeat=2)])
+    effect = 1.0 + (len(both) / len({row["bed"] for row in before}) - 1.0) * CORRELATION
+    draws = np.random.default_rng(SEED).dirichlet(counts / effect + 0.25, DRAWS)
+    lower, upper = np.quantile(draws[:, 2] - draws[:, 1], (0.05, 0.95))
+    return {"value": float((counts[2] - counts[1]) / len(both)), "lower": float(lower), "upper": float(upper)}
 
 
 def main() -> None:
@@ -114,32 +130,28 @@ def main() -> None:
     parser.add_argument("--shape", type=Path)
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
-    mesh, facts = None, {}
+    mesh: STUDY | None = None
+    facts: Row = {}
     if options.shape:
         shape = Shape.read(options.shape)
         alone = mesh_changes(shape, options.work)
         mesh = {key: value for key, value in alone.items() if key != "site.partner"} | partner()
         facts = {"shape": options.shape.name, "shape_sha256": digest(options.shape), "volume_m3": shape.volume,
                  "facets": len(shape.faces)}  # fmt: skip
+    workers, costs = options.workers or None, read_document(options.out / EFFECTS, {}).get("cpu_s", {})
     made: list[Row] = []
-    plain: dict[str, list[Row]] = {}
     rows: list[Row] = []
-    costs: dict[str, float] = {}
-    for name, lander, without, with_it in pairs(mesh):
+    plain: dict[str, list[Row]] = {}
+    for name, lander, changes in pairs(mesh):
         if lander not in plain:
-            plain[lander], costs[f"{lander}: {BOX}"] = followed(
-                BOX, lander, without, options.work, options.workers or None
-            )
+            plain[lander] = followed(BOX, lander, {}, options.work, costs, workers)
             rows += [{"effect": BOX, **row} for row in plain[lander]]
-        own, costs[f"{lander}: {name}"] = followed(name, lander, with_it, options.work, options.workers or None)
+        own = followed(name, lander, changes, options.work, costs, workers)
         rows += [{"effect": name, **row} for row in own]
         made.append({"effect": name, "lander": lander, "beds": BEDS, **compared(plain[lander], own, lander)})
         write_landers(options.out / TABLE, rows)
-        write_document(
-            options.out / EFFECTS,
-            {"effects": made, "finest_m": FINEST, "cpu_s": costs, **facts}
-            | origin("validation/forecast_hera/effects.py --work FOLDER --shape FILE.obj"),
-        )
+        found = {"effects": made, "finest_m": FINEST, "cpu_s": costs, **facts}
+        write_document(options.out / EFFECTS, found | origin(f"validation/forecast_hera/{COMMAND}"))
         print(name, lander, made[-1], flush=True)
 
 

@@ -28,6 +28,7 @@ from harness import Row, command_line, read_document, read_rows
 from landers import KINDS, TABLE
 from measurements import QUANTITIES, measurement_of
 from page import table, write_page
+from places import direction
 from samples import BINS, FACES, GROUNDS
 from write_page import DOCS, END_WORDS, SOIL, percent, plain
 
@@ -35,6 +36,8 @@ import lithobrake
 from lithobrake.report.figures.style import INK, TRAINING
 
 EXPECTED = "expected.toml"
+# Of an outline: how often it passes one point where it is tangled, and how far the tangle reaches [deg].
+REPEATED, TANGLE = 4, 20.0
 Answers = dict[str, Any]
 # What would speak against the forecast: a quantity, its first bin, and words.
 CONTRADICTIONS = (
@@ -215,12 +218,30 @@ def quantities_table() -> str:
     return table(("quantity", "what it is", "unit", "allowed values or weights", "needs lander", "applied by"), rows)
 
 
+def without_tangle(line: np.ndarray) -> np.ndarray:
+    """A closed outline, latitude and longitude [deg], [count, 2], without its tangle about the far side of its map.
+
+    Outlines are found on a flat map, whose rim is one point of the ball: an edge that meets the rim passes this point
+    again and again. All within TANGLE of it becomes the point.
+    """
+    points, counts = np.unique(line, axis=0, return_counts=True)
+    if counts.max() < REPEATED:
+        return line
+    rim = points[np.argmax(counts)]
+    units = direction(*np.radians(line).T) @ direction(*np.radians(rim[:, None]))[0]
+    far = np.flatnonzero(units < np.cos(np.radians(TANGLE)))
+    # From behind the widest gap around to it.
+    gaps = np.diff(far, append=far[0] + len(line))
+    far = np.roll(far, -int(np.argmax(gaps)) - 1)
+    return np.vstack([rim, line[far], rim])
+
+
 def draw_places(rows: dict[str, list[Row]], landers: Answers, path: Path) -> None:
     """Places of rest on soil and the smallest region with half of them, a panel for each lander (equal area)."""
     with figure(path, 1, len(landers), (11.0, 3.1), sharey=True) as (_, axes):
         for ax, (name, of) in zip(axes, landers.items(), strict=True):
             for number, line in enumerate(of["soil"]["regions"][0]["outlines"]):
-                latitude, longitude = np.array(line).T
+                latitude, longitude = without_tangle(np.array(line)).T
                 # A line that crosses the date line is not drawn back over the whole map.
                 longitude[1:][np.abs(np.diff(longitude)) > 180.0] = np.nan
                 label = None if number else "smallest region with half of them"
