@@ -275,7 +275,7 @@ def write(folder: Path, docs: Path) -> None:
     write_page(
         "forecast_hera", docs, date=date, year=date[:4], chances=chances_table(landers), hash=sums[date],
         contradictions=contradictions_table(landers), basis=basis(document), version=lithobrake.__version__,
-        landings=LANDINGS[assumptions_in(document)],
+        landings=LANDINGS[assumptions_in(document)], left_out=write_unknown_ground.wings_words(),
     )  # fmt: skip
     hashes = table(("edition", "SHA-256 of its file SHA256SUMS"), [[name, f"`{one}`"] for name, one in sums.items()])
     write_page(

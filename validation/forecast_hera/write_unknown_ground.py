@@ -184,12 +184,24 @@ def effect_parts(effects: Answers) -> dict[str, object]:
         "effects": effects_table(effects["effects"]), "finest": effects["finest_m"],
         "pair_landers": of[BOOMS]["after"]["landers"], "pair_beds": of[BOOMS]["beds"],
         "boom_cost": f"{cost_ratio(effects['cpu_s'], 'juventas', BOOMS):.0f}",
+        "wing_cost": f"{cost_ratio(effects['cpu_s'], 'milani', WINGS):.0f}",
         "boom_rest": difference(booms["at_rest"], 100.0), "boom_time": difference(booms["time_s"], 1.0 / 60.0),
         "wing_rest": difference(wings["at_rest"], 100.0), "wing_time": difference(wings["time_s"], 1.0 / 60.0),
         "wing_side": difference(wings["broad_side"], 100.0), "shape_rest": difference(shape["at_rest"], 100.0),
         "shape_time": difference(shape["time_s"], 1.0 / 60.0), "facets": effects["facets"],
         "shape_sha": effects["shape_sha256"],
     }  # fmt: skip
+
+
+def wings_words() -> str:
+    """What the first page says of wings, which the landers of the forecast do not have."""
+    (one,) = (one for one in read_document(HERE / EFFECTS)["effects"] if one["effect"] == WINGS)
+    before, after = one["before"], one["after"]
+    return (
+        f"Landers are boxes without wings and booms. With wings of an assumed size and spring {after['at_rest']} of "
+        f"{after['landers']} landers of Milani come to rest, {before['at_rest']} without "
+        f"([the pairs]({PAGE}.md#booms-wings-and-the-shape-before-dart))."
+    )
 
 
 def left_out_parts(landers: Answers) -> dict[str, object]:
