@@ -165,7 +165,9 @@ def typical(study: Study) -> Study:
     number, kind = list(kinds).index(name), kinds[name]
     size = max(median(grain_size(study, kind)), finest(study))
     friction = None if kind.pour_friction is None else median(kind.pour_friction)
-    return of_ground(study, BedGround(name, number, size, median(kind.size_ratio), friction))
+    of_kind = of_ground(study, BedGround(name, number, size, median(kind.size_ratio), friction))
+    # Its grains stay those of all kinds: a kind that says nothing of a material has that of [grain].
+    return study.model_copy(update={"bed": of_kind.bed})
 
 
 def _bed(study: Study, kind: GroundKind, ground: BedGround) -> BedSection:

@@ -85,6 +85,15 @@ def test_a_kind_has_materials_of_its_own() -> None:
     assert found.grain.density == 2500.0
 
 
+def test_the_grains_of_the_likeliest_kind_are_not_those_of_the_others() -> None:
+    own = {"gravel": GRAVEL | {"grain": {"friction": 0.9}}, "rock": {"weight": 0.25, "rock": True}}
+    whole, plain = study(kind=own), study()
+    assert whole.grain == plain.grain
+    assert whole.bed == plain.bed
+    of_kind = {one.kind: of_ground(whole, one).grain.friction for one in grounds(whole)}
+    assert of_kind == {"gravel": 0.9, "rock": plain.grain.friction}
+
+
 def test_finer_ground_is_stood_for_by_the_finest_beds() -> None:
     fine = {"weight": 0.5, "grain_size": {"distribution": "log_uniform", "lower": 0.01, "upper": 0.16}}
     whole = study(finest=0.04, kind={"fine": fine, "rock": {"weight": 0.5, "rock": True}})

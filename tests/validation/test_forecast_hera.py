@@ -296,12 +296,13 @@ def test_what_is_there_by_the_same_code_is_kept_with_what_it_cost(
 ) -> None:
     """Landers are made up; of three studies one was there already, and another was begun before."""
     import forecast
+    from assumptions import Assumptions
     from branches import branches
     from landers import folder_name
 
     three = branches("juventas")[:3]
 
-    def follow(branch, ground, count, work, workers, shown):
+    def follow(branch, ground, count, work, workers, shown, assumptions, measurements):
         if branch != three[0]:
             shown.progress(1.0, 2.0, "journeys")
         return [{"end": end} for end in ("at_rest", "partner")]
@@ -309,9 +310,8 @@ def test_what_is_there_by_the_same_code_is_kept_with_what_it_cost(
     monkeypatch.setattr(forecast, "follow", follow)
     monkeypatch.setattr(forecast, "LANDERS", ("juventas",))
     monkeypatch.setattr(forecast, "simulated_branches", lambda lander, measurements: three)
-    monkeypatch.setattr(forecast, "COUNTS", {"soil": 240})
     (tmp_path / folder_name(three[1], "soil")).mkdir()
-    rows, costs = forecast.run_all(tmp_path, 1)
+    rows, costs = forecast.run_all(tmp_path, 1, (), Assumptions("soil alone", {"soil": 240}))
     assert len(rows) == 6
     said = capsys.readouterr().out
     assert "2 of 3: juventas, small libration, ballistic, near end, soil" in said

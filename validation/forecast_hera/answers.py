@@ -36,10 +36,12 @@ HERE = Path(__file__).parent
 FIRST_EDITION = HERE / "editions" / "2026-11-26"
 FORECAST = "forecast.json"
 # What decides, beside the package, how the landers of a study file come down.
-SCRIPTS = ("branches.py", "descent.py", "grounds.py", "landers.py")
+SCRIPTS = ("assumptions.py", "branches.py", "descent.py", "grounds.py", "landers.py")
 INPUTS = ("mass_kg", *FIRST)
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 DRAWS, SEED = 4000, 1
+# Groups of landers on unknown ground, by their column.
+GROUPS = {"by_ground": "kind", "by_law": "law"}
 # Of landers on one bed, as `lithobrake plan` assumes it.
 CORRELATION = 0.07
 
@@ -177,6 +179,26 @@ def by_branch(of: Sample, lander: str) -> list[dict[str, Any]]:
     return found
 
 
+def by_group(of: Sample, column: str) -> list[dict[str, Any]]:
+    """Ends and numbers of the landers on each kind of ground or by each law of restitution, whatever their branch."""
+    found, column_values = [], of.column(column)
+    for name in dict.fromkeys(column_values):
+        own = of.where(column_values == name)
+        category, count = categories(own, "end")
+        beds = len(np.unique(own.beds))
+        effect = 1.0 + (len(own.rows) / beds - 1.0) * CORRELATION
+        counts = np.bincount(category, own.weight, minlength=count)
+        posterior = counts / counts.sum() * own.weight.sum() ** 2 / (own.weight @ own.weight) / effect + 1.0 / count
+        draws = np.random.default_rng(SEED).dirichlet(posterior, DRAWS)
+        resting = own.where(own.column("end") == "at_rest")
+        found.append({
+            "name": str(name), "share": float(own.weight.sum()), "landers": len(own.rows), "beds": beds,
+            "at_rest": estimate(float(posterior[0] / posterior.sum()), draws[:, 0]),
+            **{key: number(resting, key) for key in ("time_s", "contacts", "distance", "first_speed_ratio")},
+        })  # fmt: skip
+    return found
+
+
 def is_weighted(rows: list[Row]) -> bool:
     return any("factor" in row for row in rows)
 
@@ -197,6 +219,7 @@ def answer(rows: list[Row], lander: str, ground: str, axes: np.ndarray | None = 
         "at_rest": {name: number(resting, name) for name in ("time_s", "contacts", "distance", "first_speed_ratio")},
         "regions": regions(resting, semi_axes() if axes is None else axes) if ground == "soil" else [],
         "by_branch": by_branch(of, lander),
+        **{name: by_group(of, key) for name, key in GROUPS.items() if ground == "soil" and of.rows[0].get(key)},
         "what_decides": what_decides(of) if ground == "soil" and not is_weighted(rows) else [],
         "scored": scored,
     }

@@ -27,9 +27,9 @@ def broad_sides(lander: str) -> tuple[str, ...]:
     return tuple(face for face in FACES if face.endswith(axis))
 
 
-def bed_counts(of: Sample) -> np.ndarray:
+def bed_counts(of: Sample, seed: int = SEED) -> np.ndarray:
     """How often each lander is in a resample of as many beds of its branch, [RESAMPLES, count]."""
-    random, beds = np.random.default_rng(SEED), of.beds
+    random, beds = np.random.default_rng(seed), of.beds
     counts = np.zeros((RESAMPLES, len(beds)))
     for number in np.unique(of.branch):
         names, place = np.unique(beds[of.branch == number], return_inverse=True)
@@ -67,6 +67,24 @@ def change(before: Sequence[Row], after: Sequence[Row], lander: str) -> dict[str
     one = np.ones(len(old.rows))
     found = figures(new, one, sides) - figures(old, one, sides)
     draws = np.array([figures(new, drawn, sides) - figures(old, drawn, sides) for drawn in bed_counts(old)])
+    return differences(found, draws)
+
+
+def apart(before: Sequence[Row], after: Sequence[Row], lander: str) -> dict[str, dict[str, float]]:
+    """Differences of the figures of other landers on soil, after less before: the beds of each scatter by themselves.
+
+    shift_m: of the mean place of rest; its interval is along its direction.
+    """
+    sides, found, draws = broad_sides(lander), [], []
+    for number, rows in enumerate((before, after)):
+        of = sample(list(rows), lander, "soil")
+        found.append(figures(of, np.ones(len(of.rows)), sides))
+        draws.append(np.array([figures(of, counts, sides) for counts in bed_counts(of, SEED + number)]))
+    return differences(found[1] - found[0], draws[1] - draws[0])
+
+
+def differences(found: np.ndarray, draws: np.ndarray) -> dict[str, dict[str, float]]:
+    """Differences of figures [6] with intervals of 90 % from resamples [RESAMPLES, 6]."""
     length = float(np.linalg.norm(found[3:]))
     along = draws[:, 3:] @ (found[3:] / length) if length > 0.0 else np.zeros(RESAMPLES)
     columns = {

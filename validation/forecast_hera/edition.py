@@ -2,10 +2,11 @@
 
     python validation/forecast_hera/edition.py MEASUREMENTS [--date DATE] [--landers FOLDER] [--editions FOLDER]
 
-Landers of the first edition, or those that forecast.py --measurements simulated to a folder, are weighted by what was
-measured. The edition is a folder of its date: the measurements; forecast.json, the answers and what each measurement
-changed; a table of the predicted landings of each lander and ground, for `lithobrake score`; and SHA256SUMS, the hashes
-of its contents and of its landers. It is never written over. Last the pages of the forecast are written.
+The newest landers without measurements that an edition has, or those that forecast.py simulated to a folder, are
+weighted by what was measured. The edition is a folder of its date: the measurements; forecast.json, the answers, what
+each measurement changed, and what landers of other assumptions (assumptions.py) did; a table of the predicted landings
+of each lander and ground, for `lithobrake score`; and SHA256SUMS, the hashes of its contents and of its landers. It is
+never written over. Last the pages of the forecast are written.
 """
 
 import csv
@@ -23,8 +24,9 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 import hard_ground
 import numpy as np
 from answers import FIRST_EDITION, FORECAST, HERE, SCRIPTS, answer, digest
+from assumptions import ASSUMPTIONS, FIRST
 from branches import LANDERS, SCENARIOS
-from changes import changes
+from changes import apart, changes
 from harness import Row, command_line, origin, read_document, read_rows, write_document
 from landers import KINDS, RUNS, TABLE
 from measured_branches import measured_branches
@@ -50,34 +52,68 @@ def editions(folder: Path = EDITIONS) -> list[Path]:
     return sorted(one.parent for one in folder.glob(f"????-??-??/{FORECAST}"))
 
 
-def make_edition(file: Path, date: datetime.date, landers: Path = FIRST_EDITION, folder: Path = EDITIONS) -> Path:
+def assumed_landers(folder: Path = EDITIONS) -> Path:
+    """The folder of the newest edition that has landers of its own, simulated without measurements; else the first."""
+    own = [one for one in editions(folder) if (one / TABLE).exists() and not (one / DRAWN).exists()]
+    return own[-1] if own else FIRST_EDITION
+
+
+def make_edition(file: Path, date: datetime.date, landers: Path | None = None, folder: Path = EDITIONS) -> Path:
     """Make the edition of a date, and return its folder. Raises ValueError in one sentence for what cannot be one."""
-    target = folder / date.isoformat()
+    target, landers = folder / date.isoformat(), landers or assumed_landers(folder)
     refuse_date(target, folder)
     measurements = read_measurements(file)
     for one in measurements:
         if one.date > date:
             raise ValueError(f"{file}: {one.quantity} is of {one.date}, after the edition of {date}; change a date")
     rows, drawn, digests = landers_of(landers)
+    name = assumptions_of(landers)
+    ASSUMPTIONS[name].refuse_unused(measurements)
     own = {lander: weighted(rows, lander, measurements, drawn) for lander in LANDERS}
     effective = {lander: effective_numbers(own[lander], lander) for lander in LANDERS}
     for lander in LANDERS:
         refuse_few(effective[lander], lander)
-    assumed = read_rows(FIRST_EDITION / TABLE, KINDS)
     document = {
-        "made": date.isoformat(), "landers_of": landers.name if is_kept(landers, folder) else date.isoformat(),
+        "made": date.isoformat(), "assumptions": name,
+        "landers_of": landers.name if is_kept(landers, folder) else date.isoformat(),
         "sha256": digests | {"measurements": digest(file), "weights": digest(*(HERE / one for one in WEIGHERS))},
         "measurements": [
             {"words": one.words, "date": one.date.isoformat(), "source": one.source, "used": one.is_used}
             for one in measurements
         ],
         "effective": effective,
-        "changes": [row for lander in LANDERS for row in changes(assumed, lander, measurements)],
+        "changes": measured_changes(landers, folder, measurements),
+        "against": against(own, landers, folder),
         "landers": {name: answers(own[name], name, measurements) for name in LANDERS},
         **origin("validation/forecast_hera/edition.py MEASUREMENTS"),
     }  # fmt: skip
     write_edition(target, document, file, landers, own)
     return target
+
+
+def assumptions_of(landers: Path) -> str:
+    """The name of the assumptions of landers in a folder."""
+    return str(read_document(landers / RUNS).get("assumptions", FIRST.name))
+
+
+def measured_changes(landers: Path, folder: Path, measurements: tuple[Measurement, ...]) -> list[dict[str, Any]]:
+    """What each measurement changed alone, in the newest landers without measurements of the same assumptions."""
+    kept = assumed_landers(folder)
+    base = kept if assumptions_of(kept) == assumptions_of(landers) or (landers / DRAWN).exists() else landers
+    rows = read_rows(base / TABLE, KINDS)
+    return [row for lander in LANDERS for row in changes(rows, lander, measurements)]
+
+
+def against(own: dict[str, list[Row]], landers: Path, folder: Path) -> dict[str, Any]:
+    """Differences to the landers of the edition before, where these have other assumptions; nothing elsewhere."""
+    before = assumed_landers(folder)
+    if is_kept(landers, folder) or assumptions_of(before) == assumptions_of(landers):
+        return {}
+    rows = read_rows(before / TABLE, KINDS)
+    return {
+        "edition": before.name,
+        "landers": {name: apart(weighted(rows, name, ()), own[name], name) for name in LANDERS},
+    }
 
 
 def answers(rows: list[Row], lander: str, measurements: Iterable[Measurement]) -> dict[str, Any]:
@@ -109,8 +145,8 @@ def landers_of(folder: Path) -> tuple[list[Row], tuple[Measurement, ...], dict[s
         "code": runs["code_sha256"], "results": digest(folder / TABLE),
     }  # fmt: skip
     # Laws of the inputs are read from the studies, and must be those that the landers drew.
-    for name in LANDERS:
-        if digest(SCENARIOS / f"{name}.toml") != digests["studies"][name]:
+    for name, known in digests["studies"].items():
+        if digest(SCENARIOS / f"{name}.toml") != known:
             raise ValueError(f"scenarios/{name}.toml is not that of the landers in {folder}; restore it")
     if digest(folder / TABLE) != digests["results"]:
         raise ValueError(f"{folder / TABLE} is not that of its hash {digests['results']}; restore it")
@@ -182,7 +218,8 @@ def write_sums(folder: Path, *others: Path | None) -> None:
 
 
 def main() -> None:
-    parser = command_line(__doc__, "measurements", landers=FIRST_EDITION, editions=EDITIONS)
+    parser = command_line(__doc__, "measurements", editions=EDITIONS)
+    parser.add_argument("--landers", type=Path)
     parser.add_argument("--date", type=datetime.date.fromisoformat, default=datetime.date.today())
     options = parser.parse_args()
     try:
@@ -191,9 +228,9 @@ def main() -> None:
         raise SystemExit(str(error)) from error
     print(f"{target}: {digest(target / SUMS)}")
     if options.editions.resolve() == EDITIONS:
-        from write_editions import DOCS, write
+        from write_editions import DOCS, write_all
 
-        write(EDITIONS, DOCS)
+        write_all(EDITIONS, DOCS)
 
 
 if __name__ == "__main__":

@@ -1,13 +1,15 @@
 """The forecast of the landings of Juventas and Milani on Dimorphos, from nothing: one command.
 
     python validation/forecast_hera/forecast.py --work FOLDER [--out FOLDER] [--workers N] [--measurements FILE]
+        [--assumptions NAME]
 
 Runs the study of every branch (branches.py) on soil, and on hard ground with a restitution drawn from 0 to 1, each in a
 folder of its own in --work. One that is there already, by the same code of the engine, is kept; one that was cut short
 goes on. Then writes to --out, WORK/forecast where it is not given: landers.csv, a line for each lander; runs.json, what
 each study cost; forecast.json, the answers; and the page with its figures. Last it compares the forecast with the first
-edition. With measurements their values stand in the studies in place of assumptions, and the answers and the page are
-left to the edition that is made of the landers (edition.py --landers).
+edition. With measurements their values stand in the studies in place of assumptions. Answers and page of these, and of
+other assumptions than the first (assumptions.py), are left to the edition that is made of the landers (edition.py
+--landers).
 """
 
 import os
@@ -20,10 +22,11 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 from answers import FIRST_EDITION, FORECAST, HERE, digest, package_files, write_answers
+from assumptions import ASSUMPTIONS, FIRST, Assumptions
 from branches import LANDERS, SCENARIOS, Branch
 from compare import comparison
 from harness import Row, command_line, origin, read_document, write_document
-from landers import COUNTS, RUNS, TABLE, folder_name, follow, write_landers
+from landers import RUNS, TABLE, folder_name, follow, write_landers
 from measured_branches import simulated_branches
 from measurements import DRAWN, Measurement, read_measurements
 from write_page import write
@@ -54,39 +57,49 @@ def cpu_seconds() -> float:
     return sum(os.times()[:4])
 
 
-def expected_cpu(branch: Branch, ground: str) -> float:
+def expected_cpu(branch: Branch, ground: str, assumptions: Assumptions) -> float:
     """CPU time that the landers of a branch take, roughly [s]."""
-    return LANDER_CPU[ground] * branch.weight * COUNTS[ground]
+    return LANDER_CPU[ground] * branch.weight * assumptions.counts[ground]
 
 
-def run_part(branch: Branch, ground: str, count: int, work: Path, workers: int | None) -> tuple[list[Row], Row | None]:
+def run_part(
+    branch: Branch,
+    ground: str,
+    count: int,
+    work: Path,
+    workers: int | None,
+    assumptions: Assumptions = FIRST,
+    measurements: Sequence[Measurement] = (),
+) -> tuple[list[Row], Row | None]:
     """The landers of a branch on a ground, and what they cost; None where they were there already."""
     started, cpu, watch = time.perf_counter(), cpu_seconds(), Watch()
     is_new = not (work / folder_name(branch, ground)).exists()
-    rows = follow(branch, ground, count, work, workers, watch)
+    rows = follow(branch, ground, count, work, workers, watch, assumptions, measurements)
     if not watch.worked:
         return rows, None
     cost = {"cpu_s": round(cpu_seconds() - cpu, 1), "wall_s": round(time.perf_counter() - started, 1)}
     return rows, {**cost, "from_nothing": is_new, "date": time.strftime("%Y-%m-%d"), "load": os.getloadavg()[0]}
 
 
-def run_all(work: Path, workers: int | None, measurements: Sequence[Measurement] = ()) -> tuple[list[Row], list[Row]]:
+def run_all(
+    work: Path, workers: int | None, measurements: Sequence[Measurement] = (), assumptions: Assumptions = FIRST
+) -> tuple[list[Row], list[Row]]:
     """The landers of all branches on both grounds, and what each study cost; the costs stay beside the studies."""
     chosen = {lander: simulated_branches(lander, measurements) for lander in LANDERS}
-    parts = [(branch, ground) for lander in LANDERS for ground in COUNTS for branch in chosen[lander]]
+    parts = [(branch, ground) for lander in LANDERS for ground in assumptions.counts for branch in chosen[lander]]
     path = work / RUNS
     costs: dict[str, Row] = read_document(path, {})
-    landers, spent, fresh, left = [], 0.0, 0.0, sum(expected_cpu(*one) for one in parts)
+    landers, spent, fresh, left = [], 0.0, 0.0, sum(expected_cpu(*one, assumptions) for one in parts)
     for number, (branch, ground) in enumerate(parts, 1):
         name, started = f"{branch.lander}, {branch.name}, {ground}", time.perf_counter()
         print(f"{number} of {len(parts)}: {name}", flush=True)
-        rows, cost = run_part(branch, ground, COUNTS[ground], work, workers)
+        rows, cost = run_part(branch, ground, assumptions.counts[ground], work, workers, assumptions, measurements)
         landers += rows
-        left -= expected_cpu(branch, ground)
+        left -= expected_cpu(branch, ground, assumptions)
         if cost is not None:
             costs[name] = {"landers": len(rows), **cost}
             write_document(path, costs)
-            spent, fresh = spent + time.perf_counter() - started, fresh + expected_cpu(branch, ground)
+            spent, fresh = spent + time.perf_counter() - started, fresh + expected_cpu(branch, ground, assumptions)
         print(
             f"    {in_words(rows, cost)}{f'; about {duration(left * spent / fresh)} left' if fresh else ''}", flush=True
         )
@@ -105,25 +118,33 @@ def main() -> None:
     parser = command_line(__doc__, work=Path, workers=0)
     for name in ("out", "measurements"):
         parser.add_argument(f"--{name}", type=Path)
+    parser.add_argument("--assumptions", choices=ASSUMPTIONS, default=FIRST.name)
     options = parser.parse_args()
     out = options.out or options.work / "forecast"
     if out.resolve() == HERE or FIRST_EDITION.parent in out.resolve().parents:
         raise SystemExit(f"--out is {out}; allowed: a folder elsewhere, as editions are never edited; name another")
     for folder in (options.work, out):
         folder.mkdir(parents=True, exist_ok=True)
+    assumptions = ASSUMPTIONS[options.assumptions]
     try:
         measurements = read_measurements(options.measurements) if options.measurements else ()
+        assumptions.refuse_unused(measurements)
     except ValueError as error:
         raise SystemExit(str(error)) from error
-    landers, costs = run_all(options.work, options.workers or None, measurements)
+    landers, costs = run_all(options.work, options.workers or None, measurements, assumptions)
     write_landers(out / TABLE, landers)
     totals = {key: round(sum(one[key] for one in costs)) for key in ("cpu_s", "wall_s")}
     studies = {name: digest(SCENARIOS / f"{name}.toml") for name in LANDERS}
     made = {**totals, "code_sha256": digest(*package_files()), "studies_sha256": studies, "studies": costs}
-    write_document(out / RUNS, origin("validation/forecast_hera/forecast.py --work FOLDER") | made)
+    words = f'forecast.py --work FOLDER --assumptions "{assumptions.name}"'
+    write_document(
+        out / RUNS, origin(f"validation/forecast_hera/{words}") | {"assumptions": assumptions.name} | made
+    )  # fmt: skip
     if measurements:
         shutil.copy(options.measurements, out / DRAWN)
-        print(f"edition: python validation/forecast_hera/edition.py {options.measurements} --landers {out}")
+    if measurements or assumptions is not FIRST:
+        file = options.measurements or HERE / "measurements.toml"
+        print(f"edition: python validation/forecast_hera/edition.py {file} --landers {out}")
         return
     after = write_answers(out)
     write(out, out)

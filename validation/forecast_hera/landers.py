@@ -5,20 +5,23 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
+from assumptions import BETWEEN, Assumptions
+from assumptions import FIRST as FIRST_ASSUMPTIONS
 from branches import Branch
 from grounds import RESTITUTION, DrawnRestitution
 from harness import Row
+from measurements import Measurement
 
 from lithobrake.pipeline import run_study
 from lithobrake.pipeline.job import StudyProgress
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults, Table
-from lithobrake.study import StudySource
+from lithobrake.study import Study, StudySource
+from lithobrake.study.ground_beds import grounds
 
 TABLE, RUNS = "landers.csv", "runs.json"
-KINDS = dict.fromkeys(("lander", "branch", "ground", "end", "face"), str)
-COUNTS = {"soil": 240, "hard": 400}  # landers of all branches
+KINDS = dict.fromkeys(("lander", "branch", "ground", "law", "kind", "end", "face"), str)
 # Columns of the first touchdown, by what the table calls them.
 FIRST = {
     "speed": "impact.speed", "incidence_deg": "impact.incidence_deg",
@@ -34,12 +37,15 @@ OWN = (
 )  # fmt: skip
 
 
-def follow(branch: Branch, ground: str, count: int, work: Path, workers: int | None, shown: StudyProgress) -> list[Row]:
+def follow(
+    branch: Branch, ground: str, count: int, work: Path, workers: int | None, shown: StudyProgress,
+    assumptions: Assumptions = FIRST_ASSUMPTIONS, measurements: Iterable[Measurement] = (),
+) -> list[Row]:  # fmt: skip
     """A row for each lander of a branch on soil or hard ground, with its part of `count` landers of all branches.
 
     They are followed in a folder of work; one that has them by the same code is only read.
     """
-    tables, model = branch.tables(count), None
+    tables, model = assumptions.study(branch, ground, count, measurements), None
     if ground == "hard":
         tables["lander"]["restitution"], model = RESTITUTION, DrawnRestitution()
     source = StudySource.of_tables(tables, model and function_identity(model))
@@ -47,12 +53,25 @@ def follow(branch: Branch, ground: str, count: int, work: Path, workers: int | N
     run_study(source, folder, until="runs", worker_count=workers, model=model, shown=shown)
     study = StudyResults(folder)
     mass = Site(source.study).sampled(study.journeys.row_count)["mass"]
-    return rows_of(study, {"lander": branch.lander, "branch": branch.name, "ground": ground}, mass)
+    rows = rows_of(study, {"lander": branch.lander, "branch": branch.name, "ground": ground}, mass)
+    return with_grounds(rows, source.study) if assumptions.is_ground_unknown else rows
 
 
 def folder_name(branch: Branch, ground: str) -> str:
     """The folder of a study in that of all."""
     return f"{branch.folder}_{ground}"
+
+
+def with_grounds(rows: Iterable[Row], study: Study) -> list[Row]:
+    """Rows with kind of ground, law of restitution and size of the grains [m] of their beds; hard ground has none."""
+    of_beds, found = grounds(study), []
+    for row in rows:
+        kind, law, size = "", "", np.nan
+        if of_beds:
+            of = of_beds[int(row["bed"])]
+            (kind, _, law), size = of.kind.partition(BETWEEN), of.size
+        found.append({**row, "kind": kind, "law": law, "grain_size_m": size})
+    return found
 
 
 def rows_of(study: StudyResults, words: Row, mass: np.ndarray) -> list[Row]:

@@ -13,6 +13,7 @@ from lithobrake.study import StudySource
 
 BALLISTIC, SMALL_LIBRATION = "ballistic", "small libration"
 DELIVERY = "delivery."
+GROUND = "ground"
 
 
 def measured_branches(lander: str, measurements: Iterable[Measurement]) -> tuple[Branch, ...]:
@@ -32,7 +33,7 @@ def measured_weights(given: Iterable[Branch], measurements: Iterable[Measurement
     old = list(given)
     weights = [one.weight for one in old]
     for measurement in measurements:
-        if measurement.weights is None:
+        if measurement.weights is None or measurement.quantity == GROUND:
             continue
         names = [_attribute(one, measurement.quantity) for one in old]
         total = sum(weight for weight, name in zip(weights, names, strict=True) if name)

@@ -71,6 +71,8 @@ QUANTITIES = {
         "angle of a controlled arrival from the vertical", "deg", 0.0, 85.0, "delivery.incidence_deg",
         "incidence_deg", of_lander=True,
     ),
+    # Of landers of unknown ground alone (assumptions.py); names: of the kinds of the preset.
+    "ground": Quantity("ground of Dimorphos", names=("gravel", "stones", "rock"), of_soil=True),
     "rotation": Quantity("rotation of Dimorphos", names=("small libration", "large libration", "rolling")),
     "descent": Quantity("descent at small libration", names=("at the surface", "ballistic"), of_lander=True),
     "aim": Quantity("end of the long axis aimed at", names=("near end", "far end"), of_lander=True),

@@ -20,10 +20,11 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 import numpy as np
 from answers import FIRST_EDITION, HERE, SEED, digest
+from assumptions import FIRST
 from branches import LANDERS, branches
 from forecast import run_part
 from harness import Row, command_line, origin, read_rows, write_document
-from landers import COUNTS, KINDS, TABLE, write_landers
+from landers import KINDS, TABLE, write_landers
 
 from lithobrake.pipeline.site import Site
 from lithobrake.smallbody import Shape, dimorphos
@@ -43,7 +44,7 @@ DRAWS = 1000
 
 def mesh_changes(shape: Shape, work: Path) -> dict[str, Any]:
     """Keys of a study on a shape model without a partner, about its principal axes and of the ellipsoid's volume."""
-    ellipsoid = Site(StudySource.of_tables(branches(LANDERS[0])[0].tables(COUNTS["soil"])).study).body.shape
+    ellipsoid = Site(StudySource.of_tables(branches(LANDERS[0])[0].tables(FIRST.counts["soil"])).study).body.shape
     _, axes = np.linalg.eigh(shape.inertia_per_density)
     axes[:, 2] = np.cross(axes[:, 0], axes[:, 1])
     vertices = (shape.vertices - shape.centroid) @ axes * (ellipsoid.volume / shape.volume) ** (1.0 / 3.0)
@@ -107,7 +108,7 @@ def main() -> None:
             replace(branch, changes={**branch.changes, **change}),
             options.work / variant.replace(" ", "-"),
         )
-        found, cost = run_part(changed, "soil", COUNTS["soil"], folder, options.workers or None)
+        found, cost = run_part(changed, "soil", FIRST.counts["soil"], folder, options.workers or None)
         rows += [{"variant": variant, **row} for row in found]
         costs[f"{variant}: {lander}"] = cost
         print(f"{variant}: {lander}: {cost}", flush=True)

@@ -4,14 +4,15 @@ A lander that drew x from the density q stands for p(x) / q(x) landers of the de
 so ratios of several multiply. Source: [Owen-2000].
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
 import numpy as np
+from assumptions import kind_weights
 from branches import Branch
 from harness import Row
-from measured_branches import BALLISTIC, DELIVERY, measured_branches
+from measured_branches import BALLISTIC, DELIVERY, GROUND, measured_branches
 from measurements import DRAWN, QUANTITIES, Measurement, Quantity
 from samples import Sample, sample
 
@@ -32,7 +33,7 @@ REMEDY = (
 
 
 def weighted(
-    rows: Sequence[Row], lander: str, measurements: Iterable[Measurement], drawn: Iterable[Measurement] = ()
+    rows: Sequence[Row], lander: str, measurements: Sequence[Measurement], drawn: Sequence[Measurement] = ()
 ) -> list[Row]:
     """The rows of a lander with its `factor` and `branch_weight` by measurements, of landers simulated with others.
 
@@ -40,15 +41,28 @@ def weighted(
     """
     new = {one.name: one for one in measured_branches(lander, measurements)}
     old = {one.name: one for one in measured_branches(lander, drawn)}
+    kinds = kind_factors(measurements, drawn)
+    if any(one.quantity == GROUND for one in measurements) and not any(row.get("kind") for row in rows):
+        raise ValueError("ground has no part in these landers, which have one ground; take landers of unknown ground")
     found = []
     for name, branch in new.items():
         own = [row for row in rows if (row["lander"], row["branch"]) == (lander, name)]
         factors = branch_factors(own, branch, old[name]) if branch.weight > 0.0 else np.zeros(len(own))
+        factors *= [kinds.get(row.get("kind", ""), 1.0) for row in own]
         found += [
             {**row, "factor": float(factor), "branch_weight": branch.weight}
             for row, factor in zip(own, factors, strict=True)
         ]
     return found
+
+
+def kind_factors(measurements: Sequence[Measurement], drawn: Sequence[Measurement]) -> dict[str, float]:
+    """So many landers each one on a kind of ground stands for, where the weights of the kinds are others than drawn."""
+    after, before = kind_weights(measurements), kind_weights(drawn)
+    for name, weight in after.items():
+        if weight > 0.0 and before[name] == 0.0:
+            raise ValueError(f"ground has {name}, on which no lander was simulated; {REMEDY}")
+    return {name: weight / before[name] for name, weight in after.items() if before[name] > 0.0}
 
 
 def branch_factors(rows: Sequence[Row], new: Branch, old: Branch) -> Floats:

@@ -1,5 +1,7 @@
 """Write the pages of the forecast, docs/forecast_hera.md and docs/forecast_hera_editions.md, and the picture.
 
+With an edition on unknown ground also its own page (write_unknown_ground.py).
+
     python validation/forecast_hera/write_editions.py
 
 The last step of edition.py. The page of the first edition, docs/forecast_hera_2026_11_26.md, is not written again.
@@ -15,15 +17,18 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 sys.path.insert(0, str(Path(__file__).parents[2] / "benchmarks"))
 
 import numpy as np
+import write_unknown_ground
 from answers import FIRST_EDITION, FORECAST, HERE, digest
+from assumptions import FIRST, UNKNOWN_GROUND
 from branches import LANDERS
 from changes import broad_sides, changes
 from drawing import figure
-from edition import EDITIONS, SUMS, editions
+from edition import EDITIONS, SUMS, assumed_landers, editions
 from harness import Row, command_line, read_document, read_rows
 from landers import KINDS, TABLE
 from measurements import QUANTITIES, measurement_of
 from page import table, write_page
+from places import direction
 from samples import BINS, FACES, GROUNDS
 from write_page import DOCS, END_WORDS, SOIL, percent, plain
 
@@ -31,6 +36,8 @@ import lithobrake
 from lithobrake.report.figures.style import INK, TRAINING
 
 EXPECTED = "expected.toml"
+# Of an outline: how often it passes one point where it is tangled, and how far the tangle reaches [deg].
+REPEATED, TANGLE = 4, 20.0
 Answers = dict[str, Any]
 # What would speak against the forecast: a quantity, its first bin, and words.
 CONTRADICTIONS = (
@@ -42,6 +49,12 @@ DIFFERENCES = {
     "at_rest": ("at rest [percentage points]", 100.0), "time_s": ("median time to rest [min]", 1.0 / 60.0),
     "broad_side": ("on a broad side [percentage points]", 100.0), "shift_m": ("shift of the mean place [m]", 1.0),
 }  # fmt: skip
+# The ground of the landers of an edition by its assumptions: in a table, and in a sentence of the first page.
+GROUND_WORDS = {FIRST.name: "stones of 0.2 m", UNKNOWN_GROUND.name: "unknown: gravel, stones or rock"}
+LANDINGS = {
+    FIRST.name: "on rubble",
+    UNKNOWN_GROUND.name: "on ground that has not been measured: gravel, stones up to 1 m, or bare rock",
+}
 
 
 def names_of(landers: Answers) -> list[str]:
@@ -102,15 +115,38 @@ def side_by_side(found: Sequence[tuple[str, Answers]]) -> str:
             region = of["regions"][0]
             area = f"{plain(region['area_m2'], 3)} ({plain(region['lower'], 3)}-{plain(region['upper'], 3)})"
             rows.append([
-                name.capitalize(), date, f"{effective:.0f}", percent(of["ends"]["at_rest"]),
+                name.capitalize(), date, GROUND_WORDS[assumptions_in(document)], f"{effective:.0f}",
+                percent(of["ends"]["at_rest"]),
                 median_of(of["at_rest"]["time_s"], 60.0), median_of(of["at_rest"]["distance"], 1.0), area,
                 f"{100 * broad(document['landers'], name):.0f} %",
             ])  # fmt: skip
     heads = (
-        "lander", "edition", "effective number of landers", "at rest", "median time to rest [min]",
+        "lander", "edition", "ground", "effective number of landers", "at rest", "median time to rest [min]",
         "median distance from the aim point [m]", "region of 50 % [m2]", "on a broad side",
     )  # fmt: skip
     return table(heads, rows)
+
+
+def assumptions_in(document: Answers) -> str:
+    """The name of the assumptions of an edition; the first one does not state it."""
+    return str(document.get("assumptions", FIRST.name))
+
+
+def against_table(found: Sequence[tuple[str, Answers]]) -> str:
+    """What other assumptions changed, of each edition that has them."""
+    rows = []
+    for date, document in found:
+        of = document.get("against", {})
+        rows += [
+            [
+                name.capitalize(),
+                date,
+                of["edition"],
+                *(difference(one[key], size) for key, (_, size) in DIFFERENCES.items()),
+            ]
+            for name, one in of.get("landers", {}).items()
+        ]
+    return table(("lander", "edition", "less that of", *(words for words, _ in DIFFERENCES.values())), rows)
 
 
 def median_of(one: dict[str, float], size: float) -> str:
@@ -151,7 +187,7 @@ def measured_part(found: Sequence[tuple[str, Answers]]) -> str:
     """Measurements of all editions, and what each changed; words where there are none."""
     listed = [(date, one) for date, document in found for one in document.get("measurements", [])]
     if not listed:
-        return "No edition has a measurement yet: the first one stands on the assumptions alone."
+        return "No edition has a measurement yet: they stand on assumptions alone."
     sources = table(
         ("edition", "measurement", "published", "source"),
         [[date, one["words"], one["date"], one["source"]] for date, one in listed],
@@ -182,12 +218,30 @@ def quantities_table() -> str:
     return table(("quantity", "what it is", "unit", "allowed values or weights", "needs lander", "applied by"), rows)
 
 
+def without_tangle(line: np.ndarray) -> np.ndarray:
+    """A closed outline, latitude and longitude [deg], [count, 2], without its tangle about the far side of its map.
+
+    Outlines are found on a flat map, whose rim is one point of the ball: an edge that meets the rim passes this point
+    again and again. All within TANGLE of it becomes the point.
+    """
+    points, counts = np.unique(line, axis=0, return_counts=True)
+    if counts.max() < REPEATED:
+        return line
+    rim = points[np.argmax(counts)]
+    units = direction(*np.radians(line).T) @ direction(*np.radians(rim[:, None]))[0]
+    far = np.flatnonzero(units < np.cos(np.radians(TANGLE)))
+    # From behind the widest gap around to it.
+    gaps = np.diff(far, append=far[0] + len(line))
+    far = np.roll(far, -int(np.argmax(gaps)) - 1)
+    return np.vstack([rim, line[far], rim])
+
+
 def draw_places(rows: dict[str, list[Row]], landers: Answers, path: Path) -> None:
     """Places of rest on soil and the smallest region with half of them, a panel for each lander (equal area)."""
     with figure(path, 1, len(landers), (11.0, 3.1), sharey=True) as (_, axes):
         for ax, (name, of) in zip(axes, landers.items(), strict=True):
             for number, line in enumerate(of["soil"]["regions"][0]["outlines"]):
-                latitude, longitude = np.array(line).T
+                latitude, longitude = without_tangle(np.array(line)).T
                 # A line that crosses the date line is not drawn back over the whole map.
                 longitude[1:][np.abs(np.diff(longitude)) > 180.0] = np.nan
                 label = None if number else "smallest region with half of them"
@@ -221,17 +275,27 @@ def write(folder: Path, docs: Path) -> None:
     write_page(
         "forecast_hera", docs, date=date, year=date[:4], chances=chances_table(landers), hash=sums[date],
         contradictions=contradictions_table(landers), basis=basis(document), version=lithobrake.__version__,
+        landings=LANDINGS[assumptions_in(document)], left_out=write_unknown_ground.wings_words(),
     )  # fmt: skip
     hashes = table(("edition", "SHA-256 of its file SHA256SUMS"), [[name, f"`{one}`"] for name, one in sums.items()])
     write_page(
-        "forecast_hera_editions", docs, editions=side_by_side(found), measured=measured_part(found),
+        "forecast_hera_editions", docs, editions=side_by_side(found), against=against_table(found),
+        measured=measured_part(found),
         expected=changes_table(expected_changes(), ""), quantities=quantities_table(), hashes=hashes, date=date,
     )  # fmt: skip
 
 
+def write_all(folder: Path, docs: Path) -> None:
+    """Write these pages, and that of the newest edition on unknown ground, of the editions in a folder."""
+    write(folder, docs)
+    newest = assumed_landers(folder)
+    if assumptions_in(read_document(newest / FORECAST)) == UNKNOWN_GROUND.name:
+        write_unknown_ground.write(newest, docs)
+
+
 def main() -> None:
     command_line(__doc__).parse_args()
-    write(EDITIONS, DOCS)
+    write_all(EDITIONS, DOCS)
 
 
 if __name__ == "__main__":
