@@ -6,8 +6,8 @@ import numpy as np
 
 from lithobrake.analysis.missing_runs import Limits
 from lithobrake.pipeline.answer.run_answers import unknown_runs
-from lithobrake.pipeline.first_touchdown.emulator import SPEED, SPIN, STEEPEST, bound_of_runs, runs_beyond
 from lithobrake.pipeline.job import Job
+from lithobrake.pipeline.runs.energy_bound import bound_of_runs, runs_beyond
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.vocabulary.outcomes import RETURNS
 
@@ -25,8 +25,8 @@ def output_limits(job: Job, runs: DesignRuns) -> dict[str, Limits]:
     """
     if not unknown_runs(runs).any():
         return {}
-    bound = bound_of_runs(job, runs)
+    bound = bound_of_runs(job.design, job.folder, runs)
     speed, spin = (bound.speed, bound.spin()) if not runs_beyond(runs, bound) else (np.inf, np.inf)
-    found: dict[str, Limits] = {RETURNS: (0.0, 1.0), SPEED: (0.0, speed), "elevation_out": (0.0, STEEPEST)}
-    found |= {SPIN: (0.0, spin)} | {name: (-np.asarray(speed), speed) for name in VELOCITY}
+    found: dict[str, Limits] = {RETURNS: (0.0, 1.0), "speed_out": (0.0, speed), "elevation_out": (0.0, 0.5 * math.pi)}
+    found |= {"spin_out": (0.0, spin)} | {name: (-np.asarray(speed), speed) for name in VELOCITY}
     return found | dict.fromkeys(POSITIVE, (0.0, math.inf))

@@ -18,8 +18,10 @@ from lithobrake.pipeline.job import Job
 from lithobrake.pipeline.runs.energy_bound import (
     EnergyBound,
     across_of,
+    bound_of_runs,
     energy_bound,
     height_of_beds,
+    runs_beyond,
 )
 from lithobrake.pipeline.runs.run_table import DesignRuns
 from lithobrake.study import Study
@@ -56,22 +58,9 @@ def fit_emulator(job: Job) -> None:
             raise ValueError(f"{why}; {remedy}, or set monte_carlo.sample_count to 0")
         job.folder.write_json(EMULATOR_FILE, {"why": f"{why}."})
         return
-    bound, outputs = bound_of_runs(job, runs), outputs_of_runs(runs, RIDERS)
+    bound, outputs = bound_of_runs(job.design, job.folder, runs), outputs_of_runs(runs, RIDERS)
     inputs = inputs_met(job.design, runs) | attitude_laws(job.design, runs.inputs)
     fitted(job, inputs, runs, outputs, bound, tuple(TouchdownOutcome)).save(job.folder / EMULATOR_FILE)
-
-
-def bound_of_runs(job: Job, runs: DesignRuns) -> EnergyBound:
-    """What energy allows each run [run_count]."""
-    values = {name: runs.inputs[name] for name in job.design.medians if name in runs.inputs}
-    height, across = height_of_beds(job.study, job.folder), across_of(job.study, job.folder)
-    return energy_bound(job.design, height, values, runs.run_count, across)
-
-
-def runs_beyond(runs: DesignRuns, bound: EnergyBound) -> int:
-    """How many runs left with more speed and spin than energy allows."""
-    # At the bound of the speed nothing is left for a spin.
-    return int((runs.output(SPIN) >= bound.spin(runs.output(SPEED))).sum())
 
 
 def with_attitude(study: Study, runs: DesignRuns) -> DesignRuns:

@@ -72,6 +72,19 @@ def energy_bound(
     return EnergyBound(np.sqrt(known[IMPACT_SPEED] ** 2 + largest * spin + 2.0 * gained), np.sqrt(smallest))
 
 
+def bound_of_runs(design: DrawnDesign, folder: StudyFolder, runs: DesignRuns) -> EnergyBound:
+    """What energy allows each run of a study [run_count]."""
+    values = {name: runs.inputs[name] for name in design.medians if name in runs.inputs}
+    height, across = height_of_beds(design.study, folder), across_of(design.study, folder)
+    return energy_bound(design, height, values, runs.run_count, across)
+
+
+def runs_beyond(runs: DesignRuns, bound: EnergyBound) -> int:
+    """How many runs left with more speed and spin than energy allows."""
+    # At the bound of the speed nothing is left for a spin.
+    return int((runs.output("spin_out") >= bound.spin(runs.output("speed_out"))).sum())
+
+
 def farthest(
     study: Study, speed: "NDArray[np.float64] | float", downhill: "NDArray[np.float64] | float"
 ) -> "NDArray[np.float64] | float":
