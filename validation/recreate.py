@@ -98,10 +98,15 @@ def cases(root: Path = ROOT) -> dict[str, Case]:
     return found
 
 
+def _seconds(cost: float | dict[str, float]) -> float:
+    """CPU time [s] of a case, of which some tell that of each part."""
+    return sum(cost.values()) if isinstance(cost, dict) else float(cost)
+
+
 def _case(path: Path, content: dict[str, Any], root: Path, notes: dict[str, Any]) -> Case:
     table = path.with_name(str(content.get("table", f"{path.stem}.csv")))
     own = table.relative_to(root) if table.exists() else None
-    cost = next((float(content[key]) for key in COSTS if content.get(key)), None)
+    cost = next((_seconds(content[key]) for key in COSTS if content.get(key)), None)
     if cost is None and path.stem in notes:
         cost = float(notes[path.stem]["cpu_s"])
     if cost is None:
