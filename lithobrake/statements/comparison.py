@@ -66,9 +66,10 @@ def sentence(comparison: StudyComparison, name: str) -> str:
 def unknown(answer: ComparedAnswer) -> str:
     """How many runs have an unknown outcome, behind the number of pairs; nothing where none has."""
     shares = [f"{percent(share, 1)} of {name}" for share, name in zip(answer.missing, "AB", strict=True) if share > 0.0]
-    return (
-        f"; {' and '.join(shares)} have an unknown outcome, and bounds hold whatever became of them" if shares else ""
-    )
+    if not shares:
+        return ""
+    told = "and nothing limits their ratio" if answer.is_ratio else "and bounds hold whatever became of them"
+    return f"; {' and '.join(shares)} have an unknown outcome, {told}"
 
 
 def lines(comparison: StudyComparison) -> list[str]:
