@@ -50,8 +50,10 @@ def test_no_width_scrolls_sideways_and_the_console_is_clean(
     assert page.value("document.documentElement.scrollWidth") == width
     ground = page.value("getComputedStyle(document.body).backgroundColor")
     assert ground == ("rgb(20, 25, 31)" if dark else "rgb(255, 255, 255)")
-    page.picture(tmp_path / "page.png")
-    assert (tmp_path / "page.png").read_bytes().startswith(b"\x89PNG")
+    # A picture of the whole page makes a browser draw what lies below the first screen, which takes seconds.
+    if width == LAPTOP:
+        page.picture(tmp_path / "page.png")
+        assert (tmp_path / "page.png").read_bytes().startswith(b"\x89PNG")
     assert page.complaints == []
     assert page.requests == [report.as_uri()]
 
