@@ -44,9 +44,9 @@ def mean_over_grounds(
     """The mean of an output y [run_count], NaN where a run has none, with the interval of its mean on one ground.
 
     bed: the ground of each run [run_count]. why: a reason why these runs give no interval. missing, limits: as for
-    `mean_estimate`. The output is taken as the
-    sum of what the ground and what all else adds, each with one variance; that of grounds stands at an upper limit, as
-    in share_estimate. Source: [Searle-1992], section 3.6 (components of variance).
+    `mean_estimate`. The output is taken as the sum of what the ground and what all else adds, each with one variance;
+    that of grounds stands at an upper limit, as in share_estimate. Source: [Searle-1992], section 3.6 (components of
+    variance).
     """
     mean = mean_over_beds(y, bed, why=why, level=level, missing=missing, limits=limits)
     if mean.lower is None or mean.upper is None:

@@ -202,10 +202,8 @@ class Refits:
 
         met, known, refit: all [lander_count]. Of no known end the share is not known.
         """
-        everyone = np.ones(len(met), dtype=bool)
-        least, most = (self.share(one, everyone, refit, level) for one in (met & known, met | ~known))
-        share = float((met & known).sum() / known.sum()) if known.any() else math.nan
-        return Estimate(share, least.lower, most.upper, level)
+        told = np.where(known, met.astype(float), np.nan)
+        return share_of_known(told, lambda one, of: self.share(one, of, refit, level), level)
 
     def widened(self, counts: dict[str, CountedShare], run_outcomes: Mapping[str, int]) -> dict[str, CountedShare]:
         """The same with bounds of an outcome that no run had from 0 to what so many runs can say of it."""
@@ -215,6 +213,18 @@ class Refits:
             if one.share.upper is not None:
                 counts[outcome.value] = one.within(0.0, max(one.share.upper, limit))
         return counts
+
+
+def share_of_known(
+    met: np.ndarray, share: Callable[[np.ndarray, np.ndarray], Estimate], level: float = LEVEL
+) -> Estimate:
+    """Share of the landers of known end that have met an event [lander_count: 1, 0 or NaN], NaN where no end is known.
+
+    Bounds hold whatever becomes of the others. share: of landers which have met an event among some.
+    """
+    everyone, known = np.ones(len(met), dtype=bool), np.isfinite(met)
+    least, most = (share(np.where(known, met, end) == 1.0, everyone) for end in (0.0, 1.0))
+    return Estimate(float(met[known].mean()) if known.any() else math.nan, least.lower, most.upper, level)
 
 
 def quantile_of_some(

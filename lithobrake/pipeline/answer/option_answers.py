@@ -1,7 +1,6 @@
 """The delivery options of a study: what becomes of the landers of each on both grounds, and the best of them."""
 
-import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +9,7 @@ from lithobrake import analysis
 from lithobrake.analysis.subset_simulation import limit_state_met
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline.answer.dispersion_statistics import NORMAL_QUANTILE_90
-from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some
+from lithobrake.pipeline.answer.emulated_ends import Refits, quantile_of_some, share_of_known
 from lithobrake.pipeline.answer.journey_limit_states import UNKNOWN, rest_values
 from lithobrake.pipeline.study_folder import AGAIN, StudyFolder
 from lithobrake.results.questions import AimOnGround, AimResult, AimResults, BestAim
@@ -126,21 +125,13 @@ def _of_aim(landers: OptionLanders, row: int, ground: str, fitted: Refits) -> Ai
         return quantile_of_some(values, settled, FAR, share, unknown)
 
     return AimOnGround(
-        settled=_of_known(np.where(unknown, np.nan, settled), share),
+        settled=share_of_known(np.where(unknown, np.nan, settled), share),
         missing=float(unknown.mean()),
         distance_p95=far(landers.numbers["distance"][row]),
         time_p95=far(landers.numbers["time_s"][row]),
         allowed=False,
-        limit_states={name: _of_known(landers.met(name)[row], share) for name in landers.states},
+        limit_states={name: share_of_known(landers.met(name)[row], share) for name in landers.states},
     )
-
-
-def _of_known(met: np.ndarray, share: Callable[[np.ndarray, np.ndarray], Estimate]) -> Estimate:
-    """Share of the landers of known end that have met an event [lander_count: 1, 0 or NaN], NaN where no end is known;
-    bounds hold whatever the others do. share: of landers which have met an event among some."""
-    everyone, known = np.ones(len(met), dtype=bool), np.isfinite(met)
-    least, most = (share(np.where(known, met, end) == 1.0, everyone) for end in (0.0, 1.0))
-    return Estimate(float(met[known].mean()) if known.any() else math.nan, least.lower, most.upper)
 
 
 def _share(met: np.ndarray, of: np.ndarray, refit: np.ndarray, ground: str, fitted: Refits) -> Estimate:
