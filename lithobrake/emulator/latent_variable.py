@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,14 @@ from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.emulator.validation import folds_of, mean_by_groups
 from lithobrake.vocabulary.array_types import Array
 
-# The latent variable is normal, and nodes of the Gauss rule that integrates over it are as fine as the noise asks for,
-# which else would show single nodes as peaks of the density; or it has the values -1 and 1: two branches.
+# The latent variable is normal, or it has the values -1 and 1: two branches.
 NORMAL, BRANCHES = "normal", "branches"
 LATENTS = (NORMAL, BRANCHES)
-LATENT, NODES = Normal(0.0, 1.0), 100
+LATENT = Normal(0.0, 1.0)
+# Nodes of the Gauss rule that integrates over a normal latent variable. They lie pi / sqrt(count) apart, and no more
+# than so many times the share that the noise has of the scatter, or single nodes would be peaks of the density.
+LEAST_NODES, NODES = 20, 100
+NODE_DISTANCE = 1.2
 # Of the logarithms of the odds, over the number of runs: keeps those of branches that are certain finite.
 ODDS_PENALTY = 0.5
 # Nodes of less weight than this cost time and change no digit that counts.
@@ -73,28 +76,25 @@ class LatentTerms:
     @cached_property
     def of_power(self) -> Array:
         """Which power of the latent variable each term has, 1 at its place [term_count, power_count]."""
-        return np.eye(len(self.rule[0]))[self.indices[:, -1]]
+        return np.eye(len(self.rule()[0]))[self.indices[:, -1]]
 
-    @cached_property
-    def rule(self) -> tuple[Array, Array]:
-        """Polynomials of the latent variable at the nodes [power_count, node_count], and their weights [node_count]."""
-        if self.latent == BRANCHES:
-            return np.array([[1.0, 1.0], [-1.0, 1.0]]), np.full(2, 0.5)
-        nodes, weights = LATENT.gauss(NODES)
-        kept = weights > LEAST_NODE_WEIGHT
-        return LATENT.recurrence(LATENT_DEGREE).values(nodes[kept]), weights[kept] / weights[kept].sum()
+    def rule(self, nodes: int = NODES) -> tuple[Array, Array]:
+        """Polynomials of the latent variable at the nodes [power_count, node_count], and logarithms of their weights
+        [node_count]; nodes: how many of a normal latent variable.
+        """
+        return _rule(self.latent, nodes)
 
-    def log_weights(self, factors: Array, parameters: Array) -> Array:
+    def log_weights(self, factors: Array, parameters: Array, nodes: int = NODES) -> Array:
         """Logarithms of the weights of the nodes at points of these factors, [point_count or 1, node_count]."""
         if not len(self.odds):
-            return np.log(self.rule[1])[None]
+            return self.rule(nodes)[1][None]
         logit = factors[:, len(self.indices) :] @ parameters[len(self.indices) :]
         return -np.logaddexp(0.0, logit[:, None] * [1.0, -1.0])
 
     def by_power(self, factors: Array, parameters: Array) -> Array:
         """Coefficients of the powers of the latent variable at points of these factors, [point_count, power_count]."""
         terms = len(self.indices)
-        return (factors[:, :terms] * parameters[:terms]) @ self.of_power
+        return factors[:, :terms] @ (parameters[:terms, None] * self.of_power)
 
     def drawn(self, factors: Array, parameters: Array, count: int, random: np.random.Generator) -> Array:
         """What terms give at so many values of the latent variable that are drawn, [point_count, count]."""
@@ -106,6 +106,20 @@ class LatentTerms:
             polynomials = LATENT.recurrence(LATENT_DEGREE).values(special.ndtri(uniforms.ravel()))
             polynomials = polynomials.reshape(-1, *uniforms.shape)
         return np.einsum("pk,kpc->pc", self.by_power(factors, parameters), polynomials)
+
+
+@cache
+def _rule(latent: str, nodes: int) -> tuple[Array, Array]:
+    if latent == BRANCHES:
+        return np.array([[1.0, 1.0], [-1.0, 1.0]]), np.log(np.full(2, 0.5))
+    places, weights = LATENT.gauss(nodes)
+    kept = weights > LEAST_NODE_WEIGHT
+    return LATENT.recurrence(LATENT_DEGREE).values(places[kept]), np.log(weights[kept] / weights[kept].sum())
+
+
+def nodes_of(noise_share: float) -> int:
+    """How many nodes of a normal latent variable a noise asks for that is this share of the scatter."""
+    return int(np.clip(np.ceil((np.pi / (NODE_DISTANCE * noise_share)) ** 2), LEAST_NODES, NODES))
 
 
 def latent_terms(inputs: Mapping[str, Distribution], degree: int, latent: str, odds_degree: int = 0) -> LatentTerms:
@@ -145,13 +159,14 @@ class LatentProblem:
         """The problem of some of the runs alone, chosen [run_count]."""
         return LatentProblem(self.terms, self.factors[chosen], self.target[chosen], self.weights[chosen])
 
-    def log_densities(self, parameters: Array, noise: float) -> tuple[Array, Array, Array]:
+    def log_densities(self, parameters: Array, noise: float, nodes: int = NODES) -> tuple[Array, Array, Array]:
         """Logarithm of the density of each target [run_count], share of each node in it [run_count, node_count], and
-        how far the target is from each, over the noise. noise: standard deviation beside the expansion.
+        how far the target is from each, over the noise. noise: standard deviation beside the expansion; nodes: as in
+        `LatentTerms.rule`.
         """
-        means = self.terms.by_power(self.factors, parameters) @ self.terms.rule[0]
+        means = self.terms.by_power(self.factors, parameters) @ self.terms.rule(nodes)[0]
         away = (self.target[:, None] - means) / noise
-        exponents = self.terms.log_weights(self.factors, parameters) - 0.5 * away**2
+        exponents = self.terms.log_weights(self.factors, parameters, nodes) - 0.5 * away**2
         # The largest exponent is taken out, or with little noise all of them would underflow.
         most = exponents.max(axis=1, keepdims=True)
         shares = np.exp(exponents - most)
@@ -159,29 +174,31 @@ class LatentProblem:
         logarithms = (most + np.log(sums))[:, 0] - np.log(noise) - 0.5 * np.log(2.0 * np.pi)
         return logarithms, shares / sums, away
 
-    def loss(self, parameters: Array, noise: float) -> tuple[float, Array]:
+    def loss(self, parameters: Array, noise: float, nodes: int = NODES) -> tuple[float, Array]:
         """Negative mean logarithm of the density with the penalty of the odds, and its gradient [parameter_count]."""
-        logarithms, shares, away = self.log_densities(parameters, noise)
+        logarithms, shares, away = self.log_densities(parameters, noise, nodes)
         terms, total = len(self.terms.indices), self.weights.sum()
         share, odds = self.weights / total, parameters[terms:]
-        by_power = (share[:, None] * shares * away / noise) @ self.terms.rule[0].T
-        gradient = (self.factors[:, :terms] * (by_power @ self.terms.of_power.T)).sum(axis=0)
-        upper = np.exp(self.terms.log_weights(self.factors, parameters)[:, 1])
-        of_odds = (share * (shares[:, 1] - upper)) @ self.factors[:, terms:] - ODDS_PENALTY / total * odds
-        value = float(share @ logarithms) - 0.5 * ODDS_PENALTY / total * float(odds @ odds)
-        return -value, -np.concatenate([gradient, of_odds])
+        by_power = (share / noise)[:, None] * ((shares * away) @ self.terms.rule(nodes)[0].T)
+        value = float(share @ logarithms)
+        gradient = ((self.factors[:, :terms].T @ by_power) * self.terms.of_power).sum(axis=1)
+        if len(odds):
+            upper = np.exp(self.terms.log_weights(self.factors, parameters)[:, 1])
+            of_odds = (share * (shares[:, 1] - upper)) @ self.factors[:, terms:] - ODDS_PENALTY / total * odds
+            value -= 0.5 * ODDS_PENALTY / total * float(odds @ odds)
+            gradient = np.concatenate([gradient, of_odds])
+        return -value, -gradient
 
     def climbed(self, start: Array, noise: float, tolerance: float = TOLERANCE) -> Array:
         """Parameters of most likelihood that are reached from a start, [parameter_count]."""
         options = {"maxiter": MOST_STEPS, "maxcor": 20, "ftol": tolerance}
-        found = optimize.minimize(self.loss, start, (noise,), method="L-BFGS-B", jac=True, options=options)
+        arguments = (noise, nodes_of(noise / self.scatter))
+        found = optimize.minimize(self.loss, start, arguments, method="L-BFGS-B", jac=True, options=options)
         return np.asarray(found.x)
 
     def path(self, noise_shares: Sequence[float], tolerance: float = TOLERANCE) -> Iterator[tuple[float, Array]]:
         """Noise and parameters for each share of the scatter about the mean, from the largest share on."""
-        mean, scatter = self._mean_fit()
-        # Of some runs alone nothing may be left.
-        scatter = max(scatter, LEAST_SCATTER * float(np.abs(self.target).max()))
+        (mean, _), scatter = self._mean_fit, self.scatter
         indices, none = self.terms.indices, np.zeros(len(self.terms.odds))
         alone = np.append((indices[:, :-1] == 0).all(axis=1) & (indices[:, -1] == 1), none)
         found: list[Array] = []
@@ -207,8 +224,14 @@ class LatentProblem:
     @property
     def scatters(self) -> bool:
         """Whether the target scatters about its mean; else it has no density."""
-        return self._mean_fit()[1] > LEAST_SCATTER * float(np.abs(self.target).max())
+        return self._mean_fit[1] > LEAST_SCATTER * float(np.abs(self.target).max())
 
+    @property
+    def scatter(self) -> float:
+        """Standard deviation about the mean; of some runs alone nothing but rounding may be left of it."""
+        return max(self._mean_fit[1], LEAST_SCATTER * float(np.abs(self.target).max()))
+
+    @cached_property
     def _mean_fit(self) -> tuple[Array, float]:
         """Least-squares parameters of the terms without the latent variable, 0 for others, and the scatter left."""
         without = np.append(self.terms.indices[:, -1] == 0, np.zeros(len(self.terms.odds), dtype=bool))

@@ -70,7 +70,7 @@ class StochasticExpansion:
     def normals(self, points: Array) -> Normals:
         """The law at points in physical units [point_count, input_count]."""
         factors = self.terms.factors(points)
-        means = self.terms.by_power(factors, self.parameters) @ self.terms.rule[0]
+        means = self.terms.by_power(factors, self.parameters) @ self.terms.rule()[0]
         weights = np.exp(self.terms.log_weights(factors, self.parameters))
         return Normals(np.broadcast_to(weights, means.shape), means, np.full((len(points), 1), self.noise))
 

@@ -11,7 +11,7 @@ from scipy import integrate, stats
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform
-from lithobrake.emulator.latent_variable import LatentProblem, latent_terms
+from lithobrake.emulator.latent_variable import NOISE_SHARES, LatentProblem, latent_terms, nodes_of
 
 from ..quick_studies import quick_studies
 
@@ -415,6 +415,14 @@ def test_the_gradient_is_that_of_the_loss(latent: str, odds: int) -> None:
     ]
     # Rounding of the loss over the step, and the third derivative times its square.
     np.testing.assert_allclose(problem.loss(at, 0.4)[1], differences, atol=1e-8)
+
+
+def test_nodes_are_as_fine_as_the_noise_asks_for() -> None:
+    problem = LatentProblem.of_runs(expand("positive").runs, latent_terms(MARKET, 2, "normal"), np.ones(RUNS))
+    for share, (noise, parameters) in zip(NOISE_SHARES, problem.path(NOISE_SHARES), strict=True):
+        loss = problem.loss(parameters, noise, nodes_of(share))[0]
+        # A likelihood of so much less, over all runs, would not decide between two degrees.
+        assert loss == pytest.approx(problem.loss(parameters, noise, 400)[0], abs=0.5 / RUNS), share
 
 
 def test_the_form_of_the_better_score_is_chosen_and_said() -> None:
