@@ -2,7 +2,7 @@
 
     python validation/paper_study_figures.py
 
-Reads showcase/paper, showcase/drawn_700, showcase/drawn_170 (validation/keep_results.py), paper_study.json and
+Reads showcase/paper, showcase/drawn_700 (validation/keep_results.py), paper_study.json and
 paper_fits.json; writes paper_study_*.png and paper_study.md to docs/validation.
 """
 
@@ -35,9 +35,7 @@ PAPER_MAPE = {SPEED: 1.73, ELEVATION: 0.52, SPIN: 4.59}  # %, the paper's Figure
 # By expansion_accuracy.md, where expansions over such ranges reach all three; the paper does not publish its own.
 NARROWER = "narrower ranges of the inputs (±5 %) on another bed"
 PAPER_SHARE = 48.26  # %, the paper's, of trajectories that remain
-METHODS = {
-    "paper": "expansion, 1500 grains", "drawn_170": "randomised, 170 landings", "drawn_700": "randomised, 700 landings",
-}  # fmt: skip
+METHODS = {"paper": "expansion, 1500 grains", "drawn_700": "randomised, 700 landings"}
 OUTCOMES = {
     "captured": "captured", "clear": "rebounded", "left_sideways": "left laterally", "time_limit": "time limit",
 }  # fmt: skip
@@ -55,9 +53,7 @@ CHANGES = {
     "area doubled": "twice the area",
     "no grain held": "no frozen grains",
 }
-FILES = {"paper": "scenarios/paper.toml"} | {
-    name: f"validation/studies/{name}.toml" for name in ("drawn_170", "drawn_700")
-}
+FILES = {"paper": "scenarios/paper.toml", "drawn_700": "validation/studies/drawn_700.toml"}
 
 
 def kept(name: str) -> Entry:
@@ -93,7 +89,7 @@ def every_study() -> Iterator[tuple[str, Entry]]:
     """Return all studies of the same question."""
     yield METHODS["paper"], kept("paper")
     yield from ((f"expansion, {one['name']}", one) for one in entries("other beds"))
-    yield from ((METHODS[name], kept(name)) for name in ("drawn_170", "drawn_700"))
+    yield METHODS["drawn_700"], kept("drawn_700")
 
 
 def answer_table() -> str:

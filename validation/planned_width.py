@@ -218,7 +218,7 @@ def kept_studies() -> Iterator[Row]:
         # What the inputs explain narrows the interval of landings that differ.
         came_out = runs["half_width"] if name in LANDINGS and np.ptp(known) > 0.0 else kept_half_width(name)
         yield row_of("fresh", name, study, float(np.mean(known)), came_out, runs)
-    for name in ("mission", "drawn_700", "drawn_170"):
+    for name in ("mission", "drawn_700"):
         study, runs = read_study(SHOWCASE / name / "study.toml"), showcase_runs(SHOWCASE / name)
         yield row_of("showcase", name, study, runs["share"], runs["half_width"], runs)
     pairs = read_rows(VALIDATION / "journey_seed_pairs.csv", {"setting": str})
@@ -288,7 +288,7 @@ def correlations() -> Row:
     kept = kept_runs()
     journeys = [one for name, one in kept.items() if name not in LANDINGS] + [showcase_runs(SHOWCASE / "mission")]
     landings = [one for name, one in kept.items() if name in LANDINGS]
-    landings += [showcase_runs(SHOWCASE / name) for name in ("drawn_700", "drawn_170")]
+    landings.append(showcase_runs(SHOWCASE / "drawn_700"))
     return {"journeys": pooled(journeys), "landings": pooled(landings)}
 
 

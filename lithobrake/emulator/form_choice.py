@@ -1,6 +1,6 @@
 """The form of a law, and what belongs to it, by the scores of groups that it has not seen."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -144,15 +144,23 @@ def _members(runs: TrainingRuns, matrix: Array, folds: Sequence[tuple[_Fold, Law
 
 
 def _members_of_expansion(runs: TrainingRuns, held_out: HeldOut) -> Ensembles:
-    points = runs.x[runs.has_outputs]
-    for test, noise, parameters in held_out.folds:
-        values, weights = StochasticExpansion(held_out.terms, parameters, noise).members(points[test])
+    for test, law, points in _laws_of_expansion(runs, held_out):
+        values, weights = law.members(points)
         yield test, values[:, :, None], weights
 
 
 def _energies_of_expansion(runs: TrainingRuns, held_out: HeldOut) -> Array:
     """Energy scores [output_run_count] of runs left out, in units of the spread."""
     spread, energies = float(runs.coordinates.std()), np.empty(len(runs.y))
-    for test, values, weights in _members_of_expansion(runs, held_out):
-        energies[test] = crps(values[:, :, 0], weights, runs.coordinates[test, 0]) / spread
+    for test, law, points in _laws_of_expansion(runs, held_out):
+        energies[test] = law.normals(points).crps(runs.coordinates[test, 0]) / spread
     return energies
+
+
+def _laws_of_expansion(
+    runs: TrainingRuns, held_out: HeldOut
+) -> Iterator[tuple[NDArray[np.bool_], StochasticExpansion, Array]]:
+    """Runs left out [output_run_count], the law without them, and their points [case_count, input_count]."""
+    points = runs.x[runs.has_outputs]
+    for test, noise, parameters in held_out.folds:
+        yield test, StochasticExpansion(held_out.terms, parameters, noise), points[test]

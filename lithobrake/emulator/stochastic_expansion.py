@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy import special
 
-from lithobrake.chaos.polynomials import hermite
 from lithobrake.emulator.latent_variable import NOISE_SHARES, HeldOut, LatentProblem, LatentTerms
 from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.vocabulary.array_types import Array
 
-# Nodes of the noise of an ensemble by which runs that were left out are scored.
-NOISE_NODES = 12
+# Values of the noise in an ensemble, of equal probability: so many that two branches are no set of single values.
+NOISE_VALUES = 50
 
 
 @dataclass(frozen=True)
@@ -28,6 +27,12 @@ class Normals:
         exponents = np.log(self.weights) - 0.5 * ((coordinates[:, None] - self.means) / self.deviation) ** 2
         found = special.logsumexp(exponents, axis=1) - np.log(self.deviation[:, 0])
         return np.asarray(found - 0.5 * np.log(2.0 * np.pi))
+
+    def crps(self, coordinates: Array) -> Array:
+        """Continuous ranked probability score of a coordinate at each point [point_count]. Source: [Grimit-2006]."""
+        away = _mean_distance(coordinates[:, None] - self.means, self.deviation)
+        apart = _mean_distance(self.means[:, :, None] - self.means[:, None], np.sqrt(2.0) * self.deviation[:, None])
+        return np.asarray((self.weights * (away - 0.5 * (apart @ self.weights[:, :, None])[:, :, 0])).sum(axis=1))
 
     def averaged(self, function: Callable[[Array], Array], coordinates: Array) -> Array:
         """Average over the normals of a function of distances from them over their deviation; coordinates
@@ -77,7 +82,13 @@ class StochasticExpansion:
     def members(self, points: Array) -> tuple[Array, Array]:
         """An ensemble at points, coordinates and their weights [point_count, member_count]."""
         normals = self.normals(points)
-        nodes, shares = hermite(NOISE_NODES).gauss_rule()
-        values = normals.means[:, :, None] + self.noise * nodes
-        weights = normals.weights[:, :, None] * shares
-        return values.reshape(len(points), -1), weights.reshape(len(points), -1)
+        noise = self.noise * special.ndtri((np.arange(NOISE_VALUES) + 0.5) / NOISE_VALUES)
+        weights = np.repeat(normals.weights / NOISE_VALUES, NOISE_VALUES, axis=1)
+        return (normals.means[:, :, None] + noise).reshape(len(points), -1), weights
+
+
+def _mean_distance(means: Array, deviation: Array) -> Array:
+    """Mean absolute value of normals."""
+    away = means / deviation
+    density = np.exp(-0.5 * away**2) / np.sqrt(2.0 * np.pi)
+    return np.asarray(deviation * (away * (2.0 * special.ndtr(away) - 1.0) + 2.0 * density))

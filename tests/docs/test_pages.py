@@ -87,7 +87,7 @@ def test_the_count_of_agreements_is_that_of_the_page() -> None:
     assert count.group() in (ROOT / "docs" / "how_it_works.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("study", ["paper", "drawn_170", "drawn_700", "first_bounce", "mission"])
+@pytest.mark.parametrize("study", ["paper", "drawn_700", "first_bounce", "mission"])
 def test_kept_ledgers_have_the_runs_of_their_summaries(study: str) -> None:
     folder = ROOT / "showcase" / study
     results = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["results"]
