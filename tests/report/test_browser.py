@@ -102,7 +102,8 @@ def test_the_contents_stay_in_view_and_mark_where_one_is(shown: Page) -> None:
     shown.value("document.querySelector('#how-sure').scrollIntoView()")
     # It is marked when the browser next draws; a page that never does runs into the patience of the browser.
     shown.value(
-        f"new Promise((done) => {{ const look = () => {marked} === 'How sure' ? done() : setTimeout(look, 20); look(); }})"
+        f"new Promise((done) => {{ const look = () => {marked} === 'How sure' ? done() : setTimeout(look, 20);"
+        " look(); })"
     )
     assert shown.value("document.querySelector('nav').getBoundingClientRect().top") == 0
     shown.value("scrollTo(0, 0)")
