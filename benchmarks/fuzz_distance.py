@@ -17,7 +17,7 @@ import numba
 import numpy as np
 from distance_check import Meshes, gap_along, meshes_of, surface_distance, turned, widest_gap
 from distance_pairs import FAMILIES, Family, Floats, Integers, Library, Poses, library, poses
-from distance_queries import DISTANCE, FIRST, NORMAL, SECOND, STEPS, closest, kept, over_plane
+from distance_queries import DISTANCE, FIRST, NORMAL, SECOND, STEPS, cached, closest, kept, over_plane
 from harness import command_line, origin
 
 # Where the distance is a smaller part of the smaller body, round-off turns the line between the points too far.
@@ -43,7 +43,7 @@ def solids(shapes: Library) -> Meshes:
     return meshes_of([(s.core, s.core_polyhedron.triangles if len(s.core) > 1 else point) for s in shapes.shapes])
 
 
-@numba.njit(cache=True)
+@cached
 def expect(
     meshes: Meshes, first: Integers, second: Integers, rotation: Floats, position: Floats, normal: Floats,
     distance: Floats, gap: Floats,

@@ -134,7 +134,8 @@ def test_a_scheduler_that_goes_away_is_one_sentence_and_what_had_ended_is_kept(m
     assert 5 <= runs.reused_count < 40
 
 
-def test_no_scheduler_is_one_sentence() -> None:
+def test_no_scheduler_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("lithobrake.campaign.dask_executor._CONNECT_TIMEOUT", 0.3)
     with pytest.raises(ValueError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
         DaskExecutor("tcp://127.0.0.1:9")
 

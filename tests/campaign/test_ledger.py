@@ -6,6 +6,7 @@ import resource
 import sqlite3
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import campaign_models as models
@@ -180,8 +181,12 @@ def test_runs_that_were_under_way_when_their_coordinator_died_count_as_running_n
     assert ledger_tally(read_records(ledger.path), None).running == 0
 
 
-def test_a_ledger_that_another_program_holds_is_one_sentence_and_goes_on_when_it_is_free(tmp_path: Path) -> None:
+def test_a_ledger_that_another_program_holds_is_one_sentence_and_goes_on_when_it_is_free(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = tmp_path / "runs.sqlite"
+    # SQLite waits five seconds for a file that is held, unless it is told another time.
+    monkeypatch.setattr(sqlite3, "connect", partial(sqlite3.connect, timeout=0.2))
     said = r"runs\.sqlite cannot be written \(database is locked\).*end what holds the file"
     with Ledger(path) as ledger, LocalExecutor(1) as executor:
         shell = sqlite3.connect(path, isolation_level=None)

@@ -22,7 +22,7 @@ from lithobrake.results import NamedEmulator
 from lithobrake.results.table import ExplorerAttitude, Table
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, Quantity
 
-RUNS, BEDS = 90, 9
+RUNS, BEDS = 60, 6
 OUTPUTS = (
     "speed_out",
     "elevation_out",

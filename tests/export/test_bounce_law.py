@@ -40,7 +40,7 @@ from .known_laws import (
 )
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SEED, DRAWS = 3, 200
+SEED, DRAWS = 3, 80
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
 NONE = [np.nan]
 

@@ -51,8 +51,8 @@ def test_grains_that_pull_on_each_other_lie_looser(monkeypatch: pytest.MonkeyPat
     """So beds take more volume where gravity is less [Keulen-2026]; without a pull they do not."""
     import packing_and_cohesion as packing
 
-    monkeypatch.setattr(packing, "WIDTH", 6.0)
-    monkeypatch.setattr(packing, "DEPTH", 7.0)
+    monkeypatch.setattr(packing, "WIDTH", 5.0)
+    monkeypatch.setattr(packing, "DEPTH", 6.0)
     kind = packing.KINDS["glass"]
     fraction = {}
     for pull in (0.0, 30.0):

@@ -58,13 +58,17 @@ class Page:
 
     def open(self, path: Path, width: int, height: int = 900, *, dark: bool = False, print_: bool = False) -> None:
         """Open a file from disk on a screen of this size [px], or as it would be printed."""
-        self.tell("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
-        scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
-        self.tell("Emulation.setEmulatedMedia", media="print" if print_ else "", features=scheme)
+        self.screen(width, height, dark=dark, print_=print_)
         seen = len(self.events)
         self.tell("Page.navigate", url=path.as_uri())
         while not any(one["method"] == "Page.loadEventFired" for one in self.events[seen:]):
             self.events.append(self._next())
+
+    def screen(self, width: int, height: int = 900, *, dark: bool = False, print_: bool = False) -> None:
+        """Show what is open on a screen of this size [px], or as it would be printed."""
+        self.tell("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
+        self.tell("Emulation.setEmulatedMedia", media="print" if print_ else "", features=scheme)
 
     def value(self, expression: str) -> Any:
         """What an expression in the page is worth, once it is settled. Raises RuntimeError where it throws."""

@@ -24,6 +24,8 @@ from ..quick_studies import quick_studies
 
 umbridge = pytest.importorskip("umbridge")
 
+# So often [s] a server looks whether it is to end.
+LOOK = 0.02
 BALL = Path(__file__).parents[2] / "examples" / "ball_on_plate.toml"
 
 
@@ -35,10 +37,10 @@ def double(point: list[float], config: Mapping[str, Any]) -> list[float]:
     return [math.inf] if point[0] == 2.0 else [point[0] * config.get("factor", 2.0) + point[1]]
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     with ClientServer([ServedModel("double", ("x", "y"), ("z",), double)], "127.0.0.1", 0) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
+        threading.Thread(target=server.serve_forever, args=(LOOK,), daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
 
@@ -102,7 +104,7 @@ def test_what_is_no_number_of_an_answer_is_named(value: Any, monkeypatch: pytest
 def study_address(tmp_path: Path) -> Iterator[str]:
     """A server of the ball on a plate."""
     with ClientServer(served_models(BALL, tmp_path / "out"), "127.0.0.1", 0) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
+        threading.Thread(target=server.serve_forever, args=(LOOK,), daemon=True).start()
         yield f"http://127.0.0.1:{server.server_port}"
         server.shutdown()
 
@@ -278,7 +280,7 @@ def synthetic(point: list[float], config: Mapping[str, Any]) -> list[float]:
 def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(tmp_path: Path) -> None:
     names = ("lander.restitution", "lander.friction", "impact.incidence_deg", "solver.inputs.plate_tilt_deg")
     with ClientServer([ServedModel("fast", names, LANDING, synthetic)], "127.0.0.1", 0) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
+        threading.Thread(target=server.serve_forever, args=(LOOK,), daemon=True).start()
         path = tmp_path / "served.toml"
         text = BALL.read_text().replace(
             "python3 ball_on_plate.py", f"umbridge:http://127.0.0.1:{server.server_port}/fast"

@@ -80,10 +80,10 @@ def test_rotation_sign(ball):
 
 def test_against_another_integrator(top):
     """SciPy's DOP853 with the same gravity, the impact found by its own event on the signed height."""
-    position, velocity = cone(top, 20.0, 40.0, 6, seed=5)
+    position, velocity = cone(top, 20.0, 40.0, 4, seed=5)
     duration = 4 * 3600.0
     flights = fly(top, position, velocity, duration)
-    assert (flights.status == "impact").sum() >= 3
+    assert (flights.status == "impact").sum() >= 2
     spin = top.spin_rate
 
     def slope(_time, state):
@@ -96,7 +96,7 @@ def test_against_another_integrator(top):
     ground.terminal, ground.direction = True, -1
     for i in range(len(flights)):
         start = np.concatenate([position[i], velocity[i]])
-        limits = {"rtol": 1e-10, "atol": 1e-8, "max_step": 60.0}
+        limits = {"rtol": 1e-10, "atol": 1e-8, "max_step": 120.0}
         result = solve_ivp(slope, (0.0, duration), start, method="DOP853", events=ground, **limits)
         assert (result.status == 1) == (flights.status[i] == "impact")
         if flights.status[i] == "escaped":
@@ -106,7 +106,7 @@ def test_against_another_integrator(top):
 
 
 def test_impacts_lie_on_the_surface_and_energy_is_kept(top):
-    flights = fly(top, *cone(top, 0.0, 0.0, 120, seed=6), 12 * 3600.0)
+    flights = fly(top, *cone(top, 0.0, 0.0, 50, seed=6), 12 * 3600.0)
     hit = flights.status == "impact"
     assert set(flights.status) >= {"impact", "escaped"}
     assert np.abs(top.shape.height(flights.position[hit])).max() < 1e-9
@@ -122,7 +122,7 @@ def test_impacts_lie_on_the_surface_and_energy_is_kept(top):
 
 def test_table_against_exact(top):
     """The fast flights end like the exact ones; the table's measured error says how closely."""
-    position, velocity = cone(top, 0.0, 0.0, 300, seed=9)
+    position, velocity = cone(top, 0.0, 0.0, 100, seed=9)
     exact = fly(top, position, velocity, 12 * 3600.0)
     table = fly(top, position, velocity, 12 * 3600.0, gravity="table")
     assert (exact.status != table.status).sum() == 0
@@ -421,7 +421,7 @@ def test_the_partner_is_switched_off():
     """Alone, flights are the same bits as those of a body that never had one; with it they differ."""
     alone, bare = didymos(partner=False), replace(didymos(), partner=None)
     assert alone.partner is None
-    position, velocity = throws(alone, 0.3, 6)
+    position, velocity = throws(alone, 0.3, 2)
     ends = [fly(body, position, velocity, 2e4).position for body in (alone, bare, didymos())]
     assert np.array_equal(ends[0], ends[1])
     assert np.abs(ends[0] - ends[2]).max() > 0.1

@@ -89,10 +89,10 @@ def test_a_slow_lander_comes_to_rest_on_a_side(ground: Bed) -> None:
 
 
 def test_it_leaves_for_a_hop_that_rises_higher_than_asked_and_no_other(ground: Bed) -> None:
-    # It falls on a side; whether one lander stays is chance, and of four places most throw it up.
+    # It falls on a side; whether one lander stays is chance, and of three places most throw it up.
     lander = replace(LANDER, material=BOUNCY)
     flat: dict[str, Any] = {"grain": BOUNCY, "speed": 0.1, "incidence": 0.2, "orientation": (1.0, 0.0, 0.0, 0.0)}
-    places = ((0.1, 0.05), (0.0, 0.0), (-0.1, 0.1), (0.15, -0.1))
+    places = ((0.1, 0.05), (0.0, 0.0), (-0.1, 0.1))
     found = [land(ground, lander, slow(hop_height=0.2, place=place, **flat)) for place in places]
     left = [one for one in found if one.status == "clear"]
     assert len(left) >= 2
@@ -361,7 +361,7 @@ def test_a_flat_throw_stays_on_the_ground_and_says_how_far_it_came(ground: Bed, 
     dull = replace(ROCK, restitution=0.05, friction=0.1)
     flat = landing(grain=dull, incidence=1.35, speed=0.8, place=(0.1, 0.0), gravity=(0.0, 0.0, -0.3))
     # How far one comes depends on the grain that it meets first.
-    thrown = [land(ground, LANDER, replace(flat, place=(0.1, y)), frame_count=20) for y in (0.0, 0.1, 0.2, 0.3)]
+    thrown = [land(ground, LANDER, replace(flat, place=(0.1, y)), frame_count=20) for y in (0.0, 0.1)]
     outcome = max((one for one in thrown if one.status == "captured"), key=lambda one: one.outputs["periods_travelled"])
     assert set(outcome.outputs) == {*OUTPUTS, "periods_travelled"}
     path = np.linalg.norm(np.diff(outcome.frames["position"][:, -1, :2], axis=0), axis=1).sum()
