@@ -1,18 +1,17 @@
 """How near emulators come to laws that are known: `lithobrake.emulator.fit` beside what else one would take.
 
-    python benchmarks/emulator_peers.py [--cases ..] [--methods ..] [--runs 150 300] [--seeds 5] [--sir SIR2d.mat]
+    python benchmarks/emulator_peers.py [--cases ..] [--methods ..] [--runs 150 300] [--seeds 5]
 
 fits each method to runs of each case of benchmarks/emulator_truths.py, and adds a row to
 benchmarks/results/emulator_peers.csv: the energy distance of its law from the truth at 60 points that were not run,
 over that of drawing one of the runs (200 draws each, without the bias of so few), or, of the published cases, the mean
 over 200 points of W2**2 between the laws over the variance of the output (4000 draws, 1000 levels). `capture` is the
-root mean square error of the chance of capture. SIR: the runs and the 100 validation points of UQLab's StochasticSIR.
-Rows that are there are kept, so that one method is measured anew when its own are taken out (--anew fit).
+root mean square error of the chance of capture. are there are kept, so that one method is measured anew when its own are taken out (--anew fit).
 """
 
 from collections.abc import Iterator
+from functools import cache
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 from emulator_rivals import RIVALS
@@ -20,16 +19,18 @@ from emulator_truths import PUBLISHED, TRUTHS, Case
 from harness import RESULTS, Row, add_row, command_line, read_rows, timed, write_made
 
 from lithobrake import emulator
-from lithobrake.chaos import Uniform, latin_hypercube
+from lithobrake.chaos import latin_hypercube
 
 TABLE = RESULTS / "emulator_peers.csv"
 OWN, ANY_RUN = "fit", "any run"
 LEVELS = (np.arange(1000) + 0.5) / 1000
-SIR, BOUNDED_SIR = "SIR", "SIR, lower=0"
 KINDS = {"case": str, "method": str, "runs": int, "seed": int}
 # Laws of outputs are compared where at least a tenth of the runs has some.
 MOST_CAPTURED = 0.9
-PUBLISHED_RUNS = {"bimodal": (400, 800, 1600), "brownian": (500, 1000), SIR: (500,)}
+PUBLISHED_RUNS = {
+    "bimodal": (400, 800, 1600), "brownian": (500, 1000), "heston": (1000,), "borehole": (750,), "SIR": (500,),
+    "SIR, four inputs": (1000,),
+}  # fmt: skip
 
 
 def energy_distance(first: np.ndarray, second: np.ndarray) -> float:
@@ -100,22 +101,15 @@ def truth_row(name: str, case: Case, method: str, runs: int, seed: int) -> Row:
 def published_row(name: str, case: Case, method: str, runs: int, seed: int) -> Row:
     """W2 error of one fit."""
     points = latin_hypercube(case.inputs, 200, seed=999)
-    truth = case.conditional(points, 4000, 5)[:, :, 0]
     draws, cpu, _ = drawn(method, case, case.study(runs, seed), points, 4000)
-    return _row(name, method, runs, seed, w2_error(draws[:, :, 0], truth), cpu)
+    return _row(name, method, runs, seed, w2_error(draws[:, :, 0], published_truth(name)), cpu)
 
 
-def sir_row(path: Path, method: str, lower: float) -> Row:
-    """W2 error on the runs of the stochastic SIR model of a file."""
-    from scipy.io import loadmat
-
-    data = loadmat(path)
-    inputs = {"susceptible": Uniform(1200.0, 1800.0), "infected": Uniform(20.0, 200.0)}
-    y, truth = data["Ytrain"].reshape(-1, 1), data["Yval"][:, 0, :]
-    case = Case(inputs, lambda x, random: np.empty(0), lower=lower)
-    study = data["Xtrain"], y, np.arange(len(y))
-    draws, cpu, _ = drawn(method, case, study, data["Xval"], 4000)
-    return _row(SIR if np.isinf(lower) else BOUNDED_SIR, method, len(y), 0, w2_error(draws[:, :, 0], truth), cpu)
+@cache
+def published_truth(name: str) -> np.ndarray:
+    """Outputs of a published case at the points of its rows, [200, 4000]."""
+    case = PUBLISHED[name]
+    return case.conditional(latin_hypercube(case.inputs, 200, seed=999), 4000, 5)[:, :, 0]
 
 
 def _row(name: str, method: str, runs: int, seed: int, error: float, cpu: float, capture: float = float("nan")) -> Row:
@@ -131,14 +125,11 @@ def _key(row: Row) -> tuple[str, str, int, int]:
 def wanted(cases: list[str], methods: list[str], runs: list[int], seeds: int) -> Iterator[tuple[str, str, int, int]]:
     """Case, method, number of runs and seed of all rows."""
     for name in cases:
-        names = (SIR, BOUNDED_SIR) if name == SIR else (name,)
-        for case, method, count in product(names, methods, PUBLISHED_RUNS.get(name, runs)):
-            yield from ((case, method, count, seed) for seed in range(1 if name == SIR else seeds))
+        for method, count in product(methods, PUBLISHED_RUNS.get(name, runs)):
+            yield from ((name, method, count, seed) for seed in range(seeds))
 
 
-def measured(name: str, method: str, runs: int, seed: int, sir: Path) -> Row:
-    if name in (SIR, BOUNDED_SIR):
-        return sir_row(sir, method, 0.0 if name == BOUNDED_SIR else -np.inf)
+def measured(name: str, method: str, runs: int, seed: int) -> Row:
     made = published_row if name in PUBLISHED else truth_row
     return made(name, (PUBLISHED | TRUTHS)[name], method, runs, seed)
 
@@ -146,19 +137,18 @@ def measured(name: str, method: str, runs: int, seed: int, sir: Path) -> Row:
 def main() -> None:
     everything = [ANY_RUN, OWN, *RIVALS]
     options = command_line(
-        __doc__, cases=[*TRUTHS, *PUBLISHED], methods=everything, runs=[150, 300], seeds=5, sir=Path(), out=TABLE,
+        __doc__, cases=[*TRUTHS, *PUBLISHED], methods=everything, runs=[150, 300], seeds=5, out=TABLE,
         anew=[""],
     ).parse_args()  # fmt: skip
-    cases = [*options.cases, *([SIR] if options.sir.is_file() and SIR not in options.cases else [])]
     kept = [row for row in read_rows(options.out, KINDS) if row["method"] not in options.anew]
     options.out.unlink(missing_ok=True)
     for row in kept:
         add_row(options.out, row, 4)
     there = {_key(row) for row in kept}
-    for name, method, runs, seed in wanted(cases, options.methods, options.runs, options.seeds):
+    for name, method, runs, seed in wanted(options.cases, options.methods, options.runs, options.seeds):
         if (name, method, runs, seed) not in there:
-            add_row(options.out, measured(name, method, runs, seed, options.sir), 4)
-    write_made(options.out, f"benchmarks/emulator_peers.py --seeds {options.seeds} --sir SIR2d.mat")
+            add_row(options.out, measured(name, method, runs, seed), 4)
+    write_made(options.out, f"benchmarks/emulator_peers.py --seeds {options.seeds}")
 
 
 if __name__ == "__main__":

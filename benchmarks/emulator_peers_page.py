@@ -70,20 +70,6 @@ def published_table(rows: list[Row]) -> str:
     return table(["case", "runs", *heads, "published expansion", "published process"], lines)
 
 
-def sir_table(rows: list[Row]) -> str:
-    lines = []
-    for method, head in HEADS.items():
-        errors = [
-            [row["error"] for row in rows if (row["case"], row["method"]) == (case, method)] for case in SIR_CASES
-        ]
-        if any(errors):
-            lines.append([head, *(f"{one[0]:.2g}" if one else "" for one in errors)])
-    return table(["method", "no bound", "`lower=0`"], lines)
-
-
-SIR_CASES = ("SIR", "SIR, lower=0")
-
-
 def _captures(ring: Sequence[Row], method: str, runs: int) -> list[float]:
     """Errors of the chance of capture of a method with so many runs."""
     return [row["capture"] for row in ring if (row["method"], row["runs"]) == (method, runs)]
@@ -102,7 +88,7 @@ def main() -> None:
     costs = [row["fit_cpu_s"] for row in rows if row["method"] == OWN and row["runs"] == 300]
     write_page(
         "emulator_peers", seeds=seeds, **summary(rows), truths=truth_table(rows), captures=captures,
-        published_seeds=of_published, rivals=rivals, published=published_table(rows), sir=sir_table(rows),
+        published_seeds=of_published, rivals=rivals, published=published_table(rows),
         shortest=min(costs), longest=max(costs),
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Stochastic models whose laws are known, for comparisons of emulators: eight of them, and two published ones.
+"""Stochastic models whose laws are known, for comparisons of emulators: eight of them, and six published ones.
 
 Inputs of the eight are uniform between -1 and 1; runs come in groups of ten that share a normal effect. Each law says
 what it is, so that another program can be measured against it.
@@ -9,11 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lithobrake.chaos import Distribution, Uniform, latin_hypercube
+from lithobrake.chaos import Distribution, Normal, Uniform, latin_hypercube
 
 GROUP_SIZE = 10
 # Of an output's own deviation: what the runs of a group share.
 GROUP_EFFECT = 0.1
+HESTON_STEPS = 250
+# Of the epidemic.
+PEOPLE = 2000.0
+PATIENTS: dict[str, Distribution] = {"susceptible": Uniform(1200.0, 1800.0), "infected": Uniform(20.0, 200.0)}
 Sampled = Callable[[np.ndarray, np.random.Generator], np.ndarray]
 
 
@@ -113,6 +117,57 @@ def brownian(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return np.exp(x[:, 0] - 0.5 * x[:, 1] ** 2 + x[:, 1] * random.standard_normal(len(x)))[:, None]
 
 
+def heston(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """Price after a year by the model of Heston from the price 1, [Luethen-2023]: Euler steps of a log price whose
+    variance is cut at zero; 250 steps where the published runs have 10 000.
+    """
+    drift, reversion, mean, volatility, correlation, variance = x.T.copy()
+    log_price, step = np.zeros(len(x)), 1.0 / HESTON_STEPS
+    for _ in range(HESTON_STEPS):
+        first, second = random.standard_normal((2, len(x)))
+        positive = np.maximum(variance, 0.0)
+        root = np.sqrt(positive * step)
+        log_price += (drift - 0.5 * positive) * step + root * first
+        second = correlation * first + np.sqrt(1.0 - correlation**2) * second
+        variance = variance + reversion * (mean - positive) * step + volatility * root * second
+    return np.exp(log_price)[:, None]
+
+
+def borehole(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """Flow through a borehole of known radius, upper head and conductivity; five quantities are unknown,
+    [Luethen-2023].
+    """
+    radius, head, conductivity = x.T
+    reach = np.exp(7.71 + 1.0056 * random.standard_normal(len(x)))
+    upper, lower = random.uniform(63070.0, 115600.0, len(x)), random.uniform(63.1, 116.0, len(x))
+    below, length = random.uniform(700.0, 820.0, len(x)), random.uniform(1120.0, 1680.0, len(x))
+    ratio = np.log(reach / radius)
+    resistance = ratio * (1.0 + 2.0 * length * upper / (ratio * radius**2 * conductivity) + upper / lower)
+    return (2.0 * np.pi * upper * (head - below) / resistance)[:, None]
+
+
+def newly_infected(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """How many of 2000 are infected after the start of an epidemic, [Zhu-2023]: susceptible, infected, rates of
+    infection and of recovery. From one infection to the next the recoveries have a geometric law.
+    """
+    susceptible, infected = np.round(x[:, 0]), np.round(x[:, 1])
+    total, active = np.zeros(len(x)), np.arange(len(x))
+    while len(active):
+        rate = x[active, 2] * susceptible[active]
+        recoveries = np.floor(random.standard_exponential(len(active)) / np.log1p(rate / (x[active, 3] * PEOPLE)))
+        active, recoveries = active[recoveries < infected[active]], recoveries[recoveries < infected[active]]
+        infected[active] += 1.0 - recoveries
+        susceptible[active] -= 1.0
+        total[active] += 1.0
+        active = active[susceptible[active] > 0.0]
+    return total[:, None]
+
+
+def infected_at_known_rates(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """The same of susceptible and infected at rates of 0.5."""
+    return newly_infected(np.column_stack([x, np.full((len(x), 2), 0.5)]), random)
+
+
 def _unit(count: int) -> dict[str, Distribution]:
     return {f"x{k}": Uniform(-1.0, 1.0) for k in range(count)}
 
@@ -130,4 +185,29 @@ TRUTHS = {
 PUBLISHED = {
     "bimodal": Case({"x": Uniform(0.0, 1.0)}, bimodal),
     "brownian": Case({"drift": Uniform(0.0, 0.1), "volatility": Uniform(0.1, 0.4)}, brownian, lower=0.0),
+    "heston": Case(
+        {
+            "drift": Uniform(0.0, 0.1),
+            "reversion": Uniform(0.3, 2.0),
+            "mean": Uniform(0.02, 0.07),
+            "volatility": Uniform(0.2, 0.4),
+            "correlation": Uniform(-1.0, -0.5),
+            "variance": Uniform(0.02, 0.07),
+        },
+        heston,
+        lower=0.0,
+    ),
+    "borehole": Case(
+        {
+            "radius": Normal(0.1, 0.0161812),
+            "head": Uniform(990.0, 1110.0),
+            "conductivity": Uniform(9855.0, 12045.0),
+        },
+        borehole,
+        lower=0.0,
+    ),
+    "SIR": Case(PATIENTS, infected_at_known_rates),
+    "SIR, four inputs": Case(
+        PATIENTS | {"infection": Uniform(0.5, 0.75), "recovery": Uniform(0.5, 0.75)}, newly_infected
+    ),
 }
