@@ -9,7 +9,7 @@ from scipy import special, stats
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform, sobol_sequence
-from lithobrake.emulator import Emulator
+from lithobrake.emulator import Emulator, form_choice
 from lithobrake.emulator.law import SMOOTHING_FACTOR
 
 from ..pipeline.few_terms import few_terms
@@ -31,7 +31,8 @@ def quick() -> Iterator[None]:
 @pytest.fixture
 def few() -> Iterator[None]:
     """For what no term decides: refits of whole beds, draws of rows, laws without an effect."""
-    with few_terms():
+    with few_terms(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(form_choice, "MOST_FOLDS", 3)
         yield
 
 

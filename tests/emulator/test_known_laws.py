@@ -33,7 +33,7 @@ def test_the_odds_of_two_branches_are_followed() -> None:
     inputs, random = inputs_of(2), np.random.default_rng(0)
     x = latin_hypercube(inputs, COUNT, seed=0)
     upper = random.random(COUNT) < special.expit(3.0 * x[:, 0])
-    model = emulator.fit(inputs, x, np.where(upper, 1.5, -1.5) + 0.3 * random.standard_normal(COUNT))
+    model = emulator.fit(inputs, x, np.where(upper, 1.5, -1.5) + 0.3 * random.standard_normal(COUNT), form="rows")
     places = np.array([-0.8, -0.3, 0.3, 0.8])
     drawn = model.sample(np.column_stack([places, np.zeros(4)]), 4000)[:, :, 0]
     # Some forty runs lie as near as rows are drawn from: their odds are good to 0.08.
@@ -47,7 +47,7 @@ def test_a_bump_of_the_scatter_is_followed() -> None:
     inputs, random = inputs_of(2), np.random.default_rng(0)
     x = latin_hypercube(inputs, COUNT, seed=1)
     scale = 0.15 + np.exp(-((x[:, 0] / 0.3) ** 2))
-    model = emulator.fit(inputs, x, scale * random.standard_normal(COUNT))
+    model = emulator.fit(inputs, x, scale * random.standard_normal(COUNT), form="rows")
     near, far = model.sample([[0.0, 0.0], [0.8, 0.0]], 4000)[:, :, 0].std(axis=1)
     # 1.15 and 0.15; a logarithm that is linear makes both one.
     assert 0.85 < near < 1.5
@@ -62,7 +62,7 @@ def test_two_of_twelve_inputs_are_followed() -> None:
     def law(points: np.ndarray) -> np.ndarray:
         return np.asarray(np.sin(2.5 * points[:, 0]) + 1.5 * points[:, 1] ** 2)
 
-    model = emulator.fit(inputs, x, law(x) + 0.2 * random.standard_normal(COUNT))
+    model = emulator.fit(inputs, x, law(x) + 0.2 * random.standard_normal(COUNT), form="rows")
     error = model.sample(fresh, 500)[:, :, 0].mean(axis=1) - law(fresh)
     # Ten terms that count leave 0.2 sqrt(10 / 300) = 0.04; of the square alone 0.45 would be left.
     assert np.sqrt(np.mean(error**2)) < 0.08
@@ -71,7 +71,7 @@ def test_two_of_twelve_inputs_are_followed() -> None:
 @pytest.mark.usefixtures("quick")
 def test_a_smooth_solver_without_scatter_is_reproduced() -> None:
     inputs = inputs_of(2)
-    x, fresh = latin_hypercube(inputs, COUNT, seed=4), latin_hypercube(inputs, 200, seed=5)
+    x, fresh = latin_hypercube(inputs, 100, seed=4), latin_hypercube(inputs, 200, seed=5)
 
     def law(points: np.ndarray) -> np.ndarray:
         return np.asarray(np.sin(3.0 * points[:, 0]) + points[:, 1] ** 2 * points[:, 0])
