@@ -140,8 +140,8 @@ def test_what_is_known_of_a_bounce_is_not_inferred_and_what_it_draws_anew_teache
 
 def test_a_bounce_that_the_model_does_not_give_is_told(model: Emulator, monkeypatch: pytest.MonkeyPatch) -> None:
     # A probability of 0.05 from a hundred draws is known to 0.02.
-    monkeypatch.setattr("lithobrake.analysis.identifiability.REPLICATES", 100)
-    monkeypatch.setattr("lithobrake.analysis.identifiability.POSTERIOR_POINTS", 50)
+    monkeypatch.setitem(predictive_p_value.__globals__, "REPLICATES", 100)
+    monkeypatch.setitem(predictive_p_value.__globals__, "POSTERIOR_POINTS", 50)
     usual, odd = Observation({"speed": 0.8}), Observation({"speed": 9.0}, {"speed": 0.1})
     posteriors = [infer(model, [one], refit_count=0, point_count=1024) for one in (usual, odd)]
     assert predictive_p_value(model, posteriors[0], usual) > 0.2

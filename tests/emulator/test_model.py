@@ -174,7 +174,8 @@ def test_a_seed_that_is_none_is_refused() -> None:
 
 def test_masked_outputs_are_runs_without_outputs() -> None:
     x, y, hidden = runs()["x"], np.linspace(0.0, 1.0, COUNT), np.arange(COUNT) % 6 == 0
-    model = emulator.fit(INPUTS, x, np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden))
+    with quick_studies():
+        model = emulator.fit(INPUTS, x, np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden), form="rows")
     assert model.runs.has_outputs.tolist() == (~hidden).tolist()
     assert np.nanmax(model.sample(X, 50)) < 5.0
 
@@ -242,9 +243,10 @@ def stored_emulator(bounds_follow_inputs: bool = False) -> emulator.Emulator:
     outcome = np.where(rng.random(90) < 0.1, "stuck", "free")
     y[outcome == "stuck"] = np.nan
     upper = np.column_stack([limit, np.full((90, 2), np.inf)])
-    return emulator.fit(STORED_INPUTS, x, y, groups=np.arange(90) % 9, outcome=outcome,
-        outcomes=("free", "stuck", "lost"), lower=[0.0, -np.inf, -np.inf], upper=upper, riders=("label",),
-        output_names=("speed", "spin", "label"))  # fmt: skip
+    with quick_studies():
+        return emulator.fit(STORED_INPUTS, x, y, groups=np.arange(90) % 9, outcome=outcome,
+            outcomes=("free", "stuck", "lost"), lower=[0.0, -np.inf, -np.inf], upper=upper, riders=("label",),
+            output_names=("speed", "spin", "label"))  # fmt: skip
 
 
 @pytest.mark.parametrize("bounds_follow_inputs", [False, True])
@@ -274,7 +276,7 @@ def test_the_file_is_plain_json_that_says_what_it_is(tmp_path: Path) -> None:
     assert (content["output_names"], content["upper"]) == (["speed", "spin", "label"], [[2.0, None, None]])
 
 
-RUNS = 300
+RUNS = 200
 ONE_INPUT = {"x": Uniform(-1.0, 1.0)}
 # Volatilities above those of the published example, where a normal is hardly wrong.
 MARKET = {"drift": Uniform(0.0, 0.1), "volatility": Uniform(0.2, 0.9)}

@@ -38,7 +38,11 @@ class Step(NamedTuple):
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     folder = tmp_path_factory.mktemp("soil")
-    changed = STUDY.replace("seed = 4", "seed = 3").replace("emulated_count = 40", "emulated_count = 0").replace("count = 6,", "count = 4,")
+    changed = (
+        STUDY.replace("seed = 4", "seed = 3")
+        .replace("emulated_count = 40", "emulated_count = 0")
+        .replace("count = 6,", "count = 4,")
+    )
     (folder / "soil.toml").write_text(changed)
     return lithobrake.run(folder / "soil.toml", folder / "out", workers=1, report=False)
 
