@@ -276,7 +276,7 @@ def test_the_file_is_plain_json_that_says_what_it_is(tmp_path: Path) -> None:
     assert (content["output_names"], content["upper"]) == (["speed", "spin", "label"], [[2.0, None, None]])
 
 
-RUNS = 200
+RUNS = 300
 ONE_INPUT = {"x": Uniform(-1.0, 1.0)}
 # Volatilities above those of the published example, where a normal is hardly wrong.
 MARKET = {"drift": Uniform(0.0, 0.1), "volatility": Uniform(0.2, 0.9)}
