@@ -138,7 +138,12 @@ def test_what_is_known_of_a_bounce_is_not_inferred_and_what_it_draws_anew_teache
     assert anew.learnt()["density"].sd_ratio == pytest.approx(1.0, abs=0.05)
 
 
-def test_a_bounce_that_the_model_does_not_give_is_told(model: Emulator) -> None:
+def test_a_bounce_that_the_model_does_not_give_is_told(model: Emulator, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A probability of 0.05 from a hundred draws is known to 0.02.
+    monkeypatch.setitem(predictive_p_value.__globals__, "REPLICATES", 100)
+    monkeypatch.setitem(predictive_p_value.__globals__, "POSTERIOR_POINTS", 50)
+    # Walkers that the odd one needs go a shorter way.
+    monkeypatch.setitem(infer.__globals__, "LENGTH", 15.0)
     usual, odd = Observation({"speed": 0.8}), Observation({"speed": 9.0}, {"speed": 0.1})
     posteriors = [infer(model, [one], refit_count=0, point_count=1024) for one in (usual, odd)]
     assert predictive_p_value(model, posteriors[0], usual) > 0.2
@@ -171,7 +176,7 @@ def test_bounds_that_follow_the_inputs_are_asked_for_at_the_points() -> None:
     random, x = np.random.default_rng(3), sobol_sequence(INPUTS, 120, seed=4)
     upper = 1.0 + 0.1 * np.exp(0.1 * x[:, 1])[:, None]
     y = upper[:, 0] / (1.0 + np.exp(-x[:, 0] - 0.5 * random.standard_normal(120)))
-    bounded = emulator.fit(INPUTS, x, y, lower=0.0, upper=upper, output_names=["speed"])
+    bounded = emulator.fit(INPUTS, x, y, lower=0.0, upper=upper, output_names=["speed"], form="rows")
     seen = [Observation({"speed": 0.9})]
     with pytest.raises(ValueError, match="upper is missing, but it differed between the runs"):
         infer(bounded, seen, refit_count=0, point_count=512)

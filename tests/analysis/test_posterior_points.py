@@ -60,7 +60,11 @@ def test_walkers_meet_two_peaks_and_their_own_count() -> None:
 
 @needs_emcee
 @pytest.mark.parametrize("own", [[], ["density"]])
-def test_too_few_points_are_followed_by_walkers_that_find_the_same(model: Emulator, own: list[str]) -> None:
+def test_too_few_points_are_followed_by_walkers_that_find_the_same(
+    model: Emulator, own: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # So many autocorrelation times of 64 walkers are nearly a thousand points.
+    monkeypatch.setattr(posterior, "LENGTH", 15.0)
     few = infer(model, SEEN, own=own, refit_count=0, point_count=64)
     many = infer(model, SEEN, own=own, refit_count=0)
     assert many.is_reliable

@@ -9,9 +9,10 @@ from scipy import special, stats
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform, sobol_sequence
-from lithobrake.emulator import Emulator
+from lithobrake.emulator import Emulator, form_choice
 from lithobrake.emulator.law import SMOOTHING_FACTOR
 
+from ..pipeline.few_terms import few_terms
 from ..quick_studies import quick_studies
 from ..synthetic_landings import ELEVATION_LIMIT, NO_SOIL, SPEED_LIMIT, STRONG, WEAK, Truth, random_soils
 from .conditional_errors import DrawnRuns, fitted, law_errors
@@ -24,6 +25,14 @@ SIZE, STUDIES = (300, 30), (100,)
 def quick() -> Iterator[None]:
     """A quarter of the beds is left out at a time: each is left out once all the same, and scored by 300 runs."""
     with quick_studies():
+        yield
+
+
+@pytest.fixture
+def few() -> Iterator[None]:
+    """For what no term decides: refits of whole beds, draws of rows, laws without an effect."""
+    with few_terms(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(form_choice, "MOST_FOLDS", 3)
         yield
 
 
@@ -40,6 +49,7 @@ def test_the_conditional_law_is_near_the_truth(truth: Truth, limits: tuple[float
     assert errors[0] <= of_rows * np.mean([law_errors(truth, DrawnRuns(model))[0] for model in models])
 
 
+@pytest.mark.usefixtures("few")
 def test_without_an_effect_it_is_as_good_as_drawing_rows() -> None:
     scores, found = [], []
     for seed in range(3):
@@ -70,6 +80,7 @@ def standardised(y: np.ndarray) -> np.ndarray:
     return np.column_stack([a, b, np.log(y[:, 3]) / 0.6])
 
 
+@pytest.mark.usefixtures("few")
 def test_draws_have_the_skewness_of_the_scatter() -> None:
     truth = Truth(soil=1.0, rho=0.0, capture=0.0, skewness=2.0, branch_gap=0.0)
     drawn = fitted(truth, 300, 30, 0).sample(random_soils(4000, np.random.default_rng(0)), 5)[:, :, 0]
@@ -95,6 +106,7 @@ def test_bands_hold_on_beds_left_out() -> None:
         assert stats.chisquare(np.histogram(one.pit[:, 0], bins=10, range=(0.0, 1.0))[0]).pvalue > 0.001
 
 
+@pytest.mark.usefixtures("few")
 def test_intervals_from_refits_hold_the_truth() -> None:
     bed_count, refit_count = 12, 10
     truth = replace(WEAK, rho=0.1)

@@ -11,6 +11,7 @@ from scipy import integrate, stats
 
 from lithobrake import emulator
 from lithobrake.chaos import Uniform
+from lithobrake.emulator import latent_variable
 from lithobrake.emulator.latent_variable import NOISE_SHARES, LatentProblem, latent_terms, nodes_of
 
 from ..quick_studies import quick_studies
@@ -37,7 +38,8 @@ def runs(seed: int = 0) -> dict[str, Any]:
 
 @cache
 def fitted() -> emulator.Emulator:
-    return emulator.fit(INPUTS, **runs())
+    with quick_studies():
+        return emulator.fit(INPUTS, **runs())
 
 
 X = np.random.default_rng(5).random((40, 2))
@@ -104,7 +106,8 @@ def test_a_law_is_followed_and_said() -> None:
 def test_without_a_law_draws_are_runs() -> None:
     rng = np.random.default_rng(1)
     x, y = rng.random((150, 2)), rng.standard_normal(150)
-    model = emulator.fit(INPUTS, x, y)
+    with quick_studies():
+        model = emulator.fit(INPUTS, x, y)
     assert not model.follows_inputs
     assert "resampling the 150 runs" in model.statement
     drawn = model.sample([[0.1, 0.1], [0.9, 0.9]], 20_000)
@@ -171,7 +174,8 @@ def test_a_seed_that_is_none_is_refused() -> None:
 
 def test_masked_outputs_are_runs_without_outputs() -> None:
     x, y, hidden = runs()["x"], np.linspace(0.0, 1.0, COUNT), np.arange(COUNT) % 6 == 0
-    model = emulator.fit(INPUTS, x, np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden))
+    with quick_studies():
+        model = emulator.fit(INPUTS, x, np.ma.masked_array(np.where(hidden, 1e3, y), mask=hidden), form="rows")
     assert model.runs.has_outputs.tolist() == (~hidden).tolist()
     assert np.nanmax(model.sample(X, 50)) < 5.0
 
@@ -229,7 +233,6 @@ STORED_INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(-1.0, 1.0)}
 
 
 @cache
-@cache
 def stored_emulator(bounds_follow_inputs: bool = False) -> emulator.Emulator:
     """An emulator with all there is: bounds, a rider, an outcome without outputs and one that never was."""
     rng = np.random.default_rng(0)
@@ -240,9 +243,10 @@ def stored_emulator(bounds_follow_inputs: bool = False) -> emulator.Emulator:
     outcome = np.where(rng.random(90) < 0.1, "stuck", "free")
     y[outcome == "stuck"] = np.nan
     upper = np.column_stack([limit, np.full((90, 2), np.inf)])
-    return emulator.fit(STORED_INPUTS, x, y, groups=np.arange(90) % 9, outcome=outcome,
-        outcomes=("free", "stuck", "lost"), lower=[0.0, -np.inf, -np.inf], upper=upper, riders=("label",),
-        output_names=("speed", "spin", "label"))  # fmt: skip
+    with quick_studies():
+        return emulator.fit(STORED_INPUTS, x, y, groups=np.arange(90) % 9, outcome=outcome,
+            outcomes=("free", "stuck", "lost"), lower=[0.0, -np.inf, -np.inf], upper=upper, riders=("label",),
+            output_names=("speed", "spin", "label"))  # fmt: skip
 
 
 @pytest.mark.parametrize("bounds_follow_inputs", [False, True])
@@ -327,7 +331,8 @@ POINTS = {name: np.atleast_2d([0.3] if name != "positive" else [0.05, 0.6]) for 
 @cache
 def expand(name: str) -> emulator.Emulator:
     inputs, runs, given = FITS[name]
-    with quick_studies():
+    with quick_studies(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(latent_variable, "FOLDS", 3)
         return emulator.fit(inputs, *runs, **given)
 
 

@@ -151,21 +151,18 @@ def test_every_case_of_the_repository_has_its_script() -> None:
     assert [script for script in sorted(scripts) if not (ROOT / script).exists()] == []
 
 
-# Rows that take seconds, and by how much their numbers may differ on another machine, where sines round otherwise.
-SMALL = [
-    (["pair_tests"], 1e-6),
-    (["plate_into_loose_grains", "--rows", "16"], 0.2),
-    (["grain_on_its_own_kind", "--rows", "129"], 0.2),
-]
-
-
-@pytest.mark.parametrize(("arguments", "within"), SMALL, ids=[arguments[0] for arguments, _ in SMALL])
-def test_small_rows_of_the_validation_come_out_again(arguments: list[str], within: float, tmp_path: Path) -> None:
-    command = [sys.executable, str(ROOT / "validation" / "recreate.py"), *arguments]
-    command += ["--within", str(within), "--work", str(tmp_path)]
+# Rows that take seconds, of pairs and of a bed; validation/recreate.py makes those of all cases. How much numbers may
+# differ is what another machine makes of them, where sines round otherwise.
+def test_rows_of_pairs_come_out_again(tmp_path: Path) -> None:
+    command = [sys.executable, str(ROOT / "validation" / "recreate.py"), "pair_tests"]
+    command += ["--within", "1e-6", "--work", str(tmp_path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "same digits" in done.stdout
+
+
+def test_a_row_of_a_bed_comes_out_again(tmp_path: Path) -> None:
+    assert RUNNER["recreate"](RUNNER["cases"]()["plate_into_loose_grains"], [16], tmp_path) <= 0.2
 
 
 BANDS = runpy.run_path(str(Path(__file__).parents[2] / "validation" / "ballistic_descent" / "bands.py"))
@@ -225,11 +222,11 @@ def test_the_linear_chance_is_the_share_of_flights_that_meet_the_moon(sites: dic
     body, up = DESCENTS["balls"](), sites["directions"]()[18:19]
     descents = sites["back_in_time"](body, up, np.array([0.073]), (600.0,), True)[600.0]
     chance = sites["chances"](body, up, descents)[0]
-    errors = np.random.default_rng(5).standard_normal((100, 6)) * ([30.0] * 3 + [0.02 / 3.0] * 3)
+    errors = np.random.default_rng(5).standard_normal((60, 6)) * ([30.0] * 3 + [0.02 / 3.0] * 3)
     states = descents.states + errors
     met = fly(body, states[:, :3], states[:, 3:], 3.0 * 3600.0 + descents.times[0]).status == "impact"
     assert 0.3 < chance < 0.95
-    assert chance == pytest.approx(np.mean(met), abs=0.12)  # 100 flights
+    assert chance == pytest.approx(np.mean(met), abs=1.2 / np.sqrt(60.0))  # of 60 flights
 
 
 def test_no_release_outside_is_nearer_to_the_barycentre_than_the_moon(sites: dict[str, Any]) -> None:

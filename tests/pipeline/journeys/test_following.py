@@ -183,12 +183,12 @@ def test_a_captured_lander_rests_slides_or_is_pushed_off() -> None:
 def test_landers_together_go_as_each_alone() -> None:
     """To the last bit, each from its own place, at its own time, about a body of its own mass."""
     body = didymos(partner=False)
-    origin, axes = body.local_frame([40.0, 0.0, 50.0], [0.0, 10.0, 90.0])
-    velocity, time, mass = 0.1 * axes[:, 2] + 0.05 * axes[:, 0], np.array([5.0, 6.0, 7.0]), [5e11, 5.2e11, 5.4e11]
+    origin, axes = body.local_frame([40.0, 50.0], [0.0, 90.0])
+    velocity, time, mass = 0.1 * axes[:, 2] + 0.05 * axes[:, 0], np.array([5.0, 7.0]), [5e11, 5.4e11]
     settings: dict[str, Any] = {"friction": 0.6, "duration": 2e4}
     every, _ = hop(body, origin, velocity, HardSurface(0.7), time=time, mass=mass, **settings)
     assert every.touchdowns.max() > 4
-    for one in range(3):
+    for one in range(2):
         alone, _ = hop(body, origin[one], velocity[one], HardSurface(0.7), time=time[one], mass=mass[one], **settings)
         for name in ("end", "time", "position", "spin", "touchdowns", "path_length", "contact_length"):
             assert np.array_equal(getattr(every, name)[one], getattr(alone, name)[0]), name

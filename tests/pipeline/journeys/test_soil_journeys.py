@@ -38,7 +38,11 @@ class Step(NamedTuple):
 @pytest.fixture(scope="module")
 def study(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     folder = tmp_path_factory.mktemp("soil")
-    changed = STUDY.replace("seed = 4", "seed = 3").replace("emulated_count = 40", "emulated_count = 0")
+    changed = (
+        STUDY.replace("seed = 4", "seed = 3")
+        .replace("emulated_count = 40", "emulated_count = 0")
+        .replace("count = 6,", "count = 4,")
+    )
     (folder / "soil.toml").write_text(changed)
     return lithobrake.run(folder / "soil.toml", folder / "out", workers=1, report=False)
 
@@ -93,10 +97,10 @@ def test_the_same_seed_gives_the_same_bits(study: StudyResults, tmp_path: Path) 
     shutil.copytree(study.folder, again)
     for name in (*TABLES, *(path.name for path in again.glob("runs.sqlite*"))):
         (again / name).unlink()
-    # The first two of the six journeys, of which the others change nothing.
+    # The first two of the four journeys, of which the others change nothing.
     text = (study.folder / "study.toml").read_text(encoding="utf-8")
     for path in (tmp_path / "two.toml", again / "study.toml"):
-        path.write_text(text.replace("count = 6,", "count = 2,"), encoding="utf-8")
+        path.write_text(text.replace("count = 4,", "count = 2,"), encoding="utf-8")
     run_study(StudySource.read(tmp_path / "two.toml"), again, until="runs", worker_count=1)
     for name in TABLES:
         found, known = ((folder / name).read_bytes().splitlines() for folder in (again, study.folder))
@@ -107,8 +111,8 @@ def test_the_same_seed_gives_the_same_bits(study: StudyResults, tmp_path: Path) 
 def test_every_journey_ends_and_most_fly_between_touchdowns(study: StudyResults) -> None:
     # A lander that leaves fast may hit the partner, or leave for good: which does, chance decides.
     at_rest = study.journeys["end"] == "at_rest"
-    assert at_rest.sum() >= 4
-    assert study.touchdowns.row_count >= 12
+    assert at_rest.sum() >= 3
+    assert study.touchdowns.row_count >= 8
     last = [row for row in rows(study.touchdowns) if row["outcome"] == "captured"]
     assert [row["journey"] for row in last] == study.journeys["journey"][at_rest].tolist()
 
@@ -122,7 +126,7 @@ def test_times_add_up(study: StudyResults, body: Body) -> None:
         assert after["begin_s"] == pytest.approx(before["end_s"] + flown(study, body, arc).time[0], abs=1e-9)
         count += 1
     # No touchdown but the first of each journey is without a flight before it.
-    assert count == study.touchdowns.row_count - 6
+    assert count == study.touchdowns.row_count - 4
     times = dict(zip(study.journeys["journey"], study.journeys["time_s"], strict=True))
     assert all(row["end_s"] == times[row["journey"]] for row in rows(study.touchdowns) if row["outcome"] == "captured")
 

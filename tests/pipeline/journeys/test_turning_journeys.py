@@ -98,9 +98,12 @@ def test_flights_are_noted_with_the_time_at_which_they_may_be_flown_again(made: 
 
 
 def test_the_same_seed_gives_the_same_journeys(made: Path, tmp_path: Path) -> None:
-    run_without_emulator(turning(), tmp_path / "again", hard_ground)
+    # The first six, of which the others change nothing.
+    run_without_emulator(turning(journey={"count": 6}), tmp_path / "again", hard_ground)
     for name in ("journeys.csv", "touchdowns.csv", "arcs.csv"):
-        assert (tmp_path / "again" / name).read_bytes() == (made / name).read_bytes()
+        found, known = ((folder / name).read_bytes().splitlines() for folder in (tmp_path / "again", made))
+        assert 6 < len(found) < len(known)
+        assert found == known[: len(found)], name
 
 
 def test_another_start_makes_the_journeys_of_before_outdated() -> None:
