@@ -6,7 +6,8 @@ fits each method to runs of each case of benchmarks/emulator_truths.py, and adds
 benchmarks/results/emulator_peers.csv: the energy distance of its law from the truth at 60 points that were not run,
 over that of drawing one of the runs (200 draws each, without the bias of so few), or, of the published cases, the mean
 over 200 points of W2**2 between the laws over the variance of the output (4000 draws, 1000 levels). `capture` is the
-root mean square error of the chance of capture. are there are kept, so that one method is measured anew when its own are taken out (--anew fit).
+root mean square error of the chance of capture. Rows that are there are kept, so that one method is measured anew when
+its own are taken out (--anew fit).
 """
 
 from collections.abc import Iterator

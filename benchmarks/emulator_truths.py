@@ -147,8 +147,8 @@ def borehole(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
 
 
 def newly_infected(x: np.ndarray, random: np.random.Generator) -> np.ndarray:
-    """How many of 2000 are infected after the start of an epidemic, [Zhu-2023]: susceptible, infected, rates of
-    infection and of recovery. From one infection to the next the recoveries have a geometric law.
+    """How many of 2000 are infected after the start of an epidemic, as in UQLab's StochasticSIR: susceptible, infected,
+    rates of infection and of recovery. From one infection to the next the recoveries have a geometric law.
     """
     susceptible, infected = np.round(x[:, 0]), np.round(x[:, 1])
     total, active = np.zeros(len(x)), np.arange(len(x))
