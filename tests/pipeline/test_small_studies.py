@@ -20,6 +20,7 @@ from lithobrake.study import StudySource
 
 from ..command_line import lithobrake
 from .ball_studies import FEW_RUNS, FEW_SAMPLES, PROGRAM, PYTHON, write_ball
+from .killed_studies import start
 
 FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
 
@@ -121,19 +122,19 @@ def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(
 
 def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path) -> None:
     study = write_study(tmp_path, {})
-    command = [sys.executable, "-m", "lithobrake", "screen", str(study), "--out", str(tmp_path / "out"),
-        "--workers", "1"]  # fmt: skip
-    with subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as first:
-        while not (tmp_path / "out" / "study.toml").is_file():
-            assert first.poll() is None
-            time.sleep(0.01)
-        os.kill(first.pid, signal.SIGSTOP)
-        said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
-        told = lithobrake("status", tmp_path / "out").stdout
-        os.kill(first.pid, signal.SIGCONT)
+    first = start(study, tmp_path / "out", word="screen")
+    assert first.pid is not None
+    while not (tmp_path / "out" / "study.toml").is_file():
+        assert first.exitcode is None
+        time.sleep(0.01)
+    os.kill(first.pid, signal.SIGSTOP)
+    said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
+    told = lithobrake("status", tmp_path / "out").stdout
+    os.kill(first.pid, signal.SIGCONT)
+    first.join(timeout=120)
     assert f"another lithobrake is at work in {tmp_path / 'out'} (process {first.pid} on " in said
     assert f"(process {first.pid} on " in told
-    assert first.returncode == 0
+    assert first.exitcode == 0
     assert len(open_study(tmp_path / "out").ledger) == 9
 
 
