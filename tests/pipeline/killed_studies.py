@@ -52,9 +52,9 @@ def start(study: Path, out: Path, worker_count: int = 1, word: str = "run") -> B
     return process
 
 
-def end(study: Path, out: Path) -> None:
+def end(study: Path, out: Path, worker_count: int = 1) -> None:
     """Run a study to its end, undisturbed."""
-    process = start(study, out)
+    process = start(study, out, worker_count)
     process.join(timeout=1200)
     assert process.exitcode == 0, (study.parent / "said.txt").read_text()
 

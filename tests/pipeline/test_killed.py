@@ -49,7 +49,7 @@ def test_a_study_killed_at_random_moments_ends_with_the_same_bits(tmp_path: Path
     if not (lies_on_disk(advance) and lies_on_disk(integrate_flights)):
         compile_kernels(lambda *what: None)
         fly_briefly(asked)
-    end(study, calm)
+    end(study, calm, worker_count=2)
     durations = json.loads((calm / "keys.json").read_text())["wall_s"]
     files = {stage.name: stage.files(asked) for stage in STAGES if stage.files(asked)}
     assert {*MOMENTS, *ALIKE} == set(files) - AT_ONCE
