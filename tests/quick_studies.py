@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from matplotlib.figure import Figure
 
+from lithobrake.analysis import half_width
 from lithobrake.campaign import LocalExecutor, executors
 from lithobrake.campaign.single_run import Limits
 from lithobrake.campaign.worker import pickled
@@ -78,12 +79,15 @@ def blank_pictures() -> Iterator[None]:
 @contextmanager
 def quick_studies() -> Iterator[None]:
     """Emulators are fitted anew without each quarter of the beds, and not without each bed; pictures are coarse; a
-    study of one worker makes its runs in this process; nothing that this process writes waits for the disk.
+    study of one worker makes its runs in this process; nothing that this process writes waits for the disk. Half-widths
+    that a plan expects are those of a tenth of the studies that are made up for them.
 
-    What an emulator is worth is tested in tests/emulator, how pages look in tests/report, processes in tests/campaign.
+    What an emulator is worth is tested in tests/emulator, how pages look in tests/report, processes in tests/campaign,
+    and expected half-widths in tests/analysis.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(form_choice, "MOST_FOLDS", 4)
+        patch.setattr(half_width, "STUDIES", 40)
         patch.setitem(STYLE, "savefig.dpi", 50)
         patch.setattr(os, "fsync", lambda file: None)
         patch.setattr(sqlite3, "connect", partial(sqlite3.connect, factory=Unsynced))

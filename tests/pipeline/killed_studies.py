@@ -24,20 +24,29 @@ FORKS.set_forkserver_preload(
     ["lithobrake.cli", "lithobrake.chaos.surrogate", "lithobrake.dem.example_world", "lithobrake.pipeline.stages",
         "lithobrake.pipeline.planning.planner", "lithobrake.pipeline.study_run", "lithobrake.report.pages.study_page",
         "lithobrake.report.reports", "lithobrake.smallbody.flight",
-        "lithobrake.touchdown.simulation", "lithobrake.touchdown.bed_library", "scipy.stats"]
+        "lithobrake.touchdown.simulation", "lithobrake.touchdown.bed_library", "matplotlib.figure", "scipy.stats"]
 )  # fmt: skip
+# Pictures are drawn, and saved as empty ones: letters are what takes long to save.
 COMMAND = """
 import os, sys
+from functools import cache
+from matplotlib.figure import Figure
+from lithobrake.report import reports
 said = os.open({said!r}, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
 os.dup2(said, 1), os.dup2(said, 2)
-sys.argv = ["lithobrake", "run", {study!r}, "--out", {out!r}, "--workers", {workers!r}]
+saved = reports._saved
+blank = cache(lambda kind: saved(Figure(figsize=(1.0, 1.0)), kind))
+reports._saved = lambda figure, kind: blank(kind)
+sys.argv = ["lithobrake", {word!r}, {study!r}, "--out", {out!r}, "--workers", {workers!r}]
 from lithobrake.cli import app
 app()
 """
 
 
-def start(study: Path, out: Path, worker_count: int = 1) -> BaseProcess:
+def start(study: Path, out: Path, worker_count: int = 1, word: str = "run") -> BaseProcess:
+    """Start a command of a study; what it says is in said.txt beside the study file."""
     told = {"study": str(study), "out": str(out), "said": str(study.parent / "said.txt"), "workers": str(worker_count)}
+    told["word"] = word
     process = FORKS.Process(target=exec, args=(COMMAND.format(**told), {}))
     process.start()
     return process

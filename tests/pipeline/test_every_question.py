@@ -28,11 +28,11 @@ QUESTIONS: dict[str, dict[str, Any]] = {
                  "east_error": {"distribution": "normal", "mean": 0.0, "std": 5.0}},
     "limit_states": {"fast": "speed_out > 0.05", "gone": "escaped or speed_out > 0.2"},
     "expansion": {"screening_level": 2, "screening_degree": 2, "refined_level": 2, "refined_degree": 2,
-                  "test_count": 20, "kept_outputs": ["speed_out"]},
+                  "test_count": 10, "kept_outputs": ["speed_out"]},
     "monte_carlo": {"sample_count": 200},
     "journey": {"emulated_count": 100},
-    "flight": {"flight_count": 30},
-    "hard_ground": {"count": 20},
+    "flight": {"flight_count": 10},
+    "hard_ground": {"count": 10},
 }  # fmt: skip
 
 

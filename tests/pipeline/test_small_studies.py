@@ -20,6 +20,7 @@ from lithobrake.study import StudySource
 
 from ..command_line import lithobrake
 from .ball_studies import FEW_RUNS, FEW_SAMPLES, PROGRAM, PYTHON, write_ball
+from .killed_studies import start
 
 FRICTION = 'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }'
 
@@ -91,20 +92,20 @@ runpy.run_path(PROGRAM, run_name="__main__")
 """
 
 
-@pytest.mark.parametrize(("share", "said"), [
-    ("0.02", "of 41 runs failed (8 x RuntimeError: the program ended with exit code 1; its last words: "
-             "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
-    ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
-])  # fmt: skip
-def test_runs_that_fail_in_a_corner_are_not_fitted_around(share: str, said: str, tmp_path: Path) -> None:
+def test_runs_that_fail_in_a_corner_are_not_fitted_around(tmp_path: Path) -> None:
     (tmp_path / "breaks.py").write_text(FAILS_ABOVE.replace("PROGRAM", repr(str(PROGRAM))))
-    changes = {
-        "screening_level = 2": "screening_level = 2",
-        "failed_share = 0.02": f"failed_share = {share}\nretry_count = 0",
-    }
-    study = write_study(tmp_path, changes, tmp_path / "breaks.py")
-    assert said in said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
-    assert not (tmp_path / "out" / "screening.json").exists()
+    for share, said in (
+        ("0.02", "of 41 runs failed (8 x RuntimeError: the program ended with exit code 1; its last words: "
+                 "the ball broke), 8 of them where lander.restitution > 0.6; allowed: at most 2 %"),
+        ("0.5", "8 of them lie where lander.restitution > 0.6, so what is fitted without them knows nothing there"),
+    ):  # fmt: skip
+        changes = {
+            "screening_level = 2": "screening_level = 2",
+            "failed_share = 0.02": f"failed_share = {share}\nretry_count = 0",
+        }
+        study = write_study(tmp_path, changes, tmp_path / "breaks.py")
+        assert said in said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
+        assert not (tmp_path / "out" / "screening.json").exists()
 
 
 def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(tmp_path: Path) -> None:
@@ -121,19 +122,19 @@ def test_a_program_that_never_works_ends_the_study_soon_and_so_does_its_restart(
 
 def test_a_second_coordinator_is_refused_while_the_first_goes_on(tmp_path: Path) -> None:
     study = write_study(tmp_path, {})
-    command = [sys.executable, "-m", "lithobrake", "screen", str(study), "--out", str(tmp_path / "out"),
-        "--workers", "1"]  # fmt: skip
-    with subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as first:
-        while not (tmp_path / "out" / "study.toml").is_file():
-            assert first.poll() is None
-            time.sleep(0.01)
-        os.kill(first.pid, signal.SIGSTOP)
-        said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
-        told = lithobrake("status", tmp_path / "out").stdout
-        os.kill(first.pid, signal.SIGCONT)
+    first = start(study, tmp_path / "out", word="screen")
+    assert first.pid is not None
+    while not (tmp_path / "out" / "study.toml").is_file():
+        assert first.exitcode is None
+        time.sleep(0.01)
+    os.kill(first.pid, signal.SIGSTOP)
+    said = said_by("screen", study, "--out", tmp_path / "out", "--workers", 1, code=2)
+    told = lithobrake("status", tmp_path / "out").stdout
+    os.kill(first.pid, signal.SIGCONT)
+    first.join(timeout=120)
     assert f"another lithobrake is at work in {tmp_path / 'out'} (process {first.pid} on " in said
     assert f"(process {first.pid} on " in told
-    assert first.returncode == 0
+    assert first.exitcode == 0
     assert len(open_study(tmp_path / "out").ledger) == 9
 
 

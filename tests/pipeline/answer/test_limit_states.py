@@ -30,7 +30,8 @@ CONDITIONS = {
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """A study of 150 landings, to its page."""
-    tables = synthetic_tables(design={"run_count": 150}, hard_ground={"count": 0}, limit_states=CONDITIONS)
+    changes = {"hard_ground": {"count": 0}, "flight": {"flight_count": 100}}
+    tables = synthetic_tables(design={"run_count": 150}, limit_states=CONDITIONS, **changes)
     return lithobrake.run(tables, tmp_path_factory.mktemp("limits") / "out", workers=1, model=SyntheticLander())
 
 
@@ -94,7 +95,7 @@ def test_every_key_is_described_and_the_page_has_the_sentences(results: StudyRes
 
 
 def test_one_bed_has_no_interval_and_says_why(tmp_path: Path) -> None:
-    few = {"design": {"run_count": 30}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 50}}
+    few = {"design": {"run_count": 16}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 50}}
     changes = {"bed": {"bed_count": 1}, "hard_ground": {"count": 0}, "limit_states": {"fast": "speed_out > 0.1"}}
     tables = synthetic_tables(**few, **changes)
     results = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)

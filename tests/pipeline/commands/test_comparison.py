@@ -129,6 +129,7 @@ def test_status_of_a_campaign_that_is_no_study_is_json_too(tmp_path: Path) -> No
     assert (content["stages"], content["runs"]["total"], content["runs"]["estimates"]) == ([], 1, None)
 
 
+PAIRS = 24
 FASTER = {"speed": {"distribution": "uniform", "lower": 0.08, "upper": 0.16}}
 
 
@@ -139,16 +140,17 @@ def made(folder: Path, seed: int = 2, **changes: dict[str, object]) -> Path:
 
 @pytest.fixture(scope="module")
 def pair(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
-    """Journeys of 48 landers, and of the first 36 of them at twice the speed."""
+    """Journeys of 30 landers, and of the first 24 of them at twice the speed."""
     place = tmp_path_factory.mktemp("comparison")
-    return made(place / "slow"), made(place / "fast", delivery=FASTER, journey={"count": 36})
+    slow = made(place / "slow", journey={"count": 30})
+    return slow, made(place / "fast", delivery=FASTER, journey={"count": PAIRS})
 
 
 def test_differences_are_those_of_the_pairs(pair: tuple[Path, Path]) -> None:
     found = compare_studies(*pair)
     slow, fast = (lithobrake.open_study(path).journeys for path in pair)
-    rests = [table["end"][:36] == "at_rest" for table in (slow, fast)]
-    failed = [table["end"][:36] == "failed" for table in (slow, fast)]
+    rests = [table["end"][:PAIRS] == "at_rest" for table in (slow, fast)]
+    failed = [table["end"][:PAIRS] == "failed" for table in (slow, fast)]
     answer = found.answers["at_rest"]
     assert (answer.pairs, answer.is_fraction) == ((~failed[0] & ~failed[1]).sum(), True)
     # A failed journey is none of those that do not rest.
@@ -158,15 +160,15 @@ def test_differences_are_those_of_the_pairs(pair: tuple[Path, Path]) -> None:
     assert "have an unknown outcome, and bounds hold whatever became of them" in sentence(found, "at_rest")
     assert answer.difference.lower < answer.difference.value < answer.difference.upper
     time = found.answers["time_s_median"]
-    medians = [np.median(table["time_s"][:36][rest]) for table, rest in zip((slow, fast), rests, strict=True)]
+    medians = [np.median(table["time_s"][:PAIRS][rest]) for table, rest in zip((slow, fast), rests, strict=True)]
     assert time.difference.value == pytest.approx(medians[1] - medians[0])
     assert time.difference.lower > 0.0
     both = rests[0] & rests[1]
-    times = [table["time_s"][:36][both] for table in (slow, fast)]
+    times = [table["time_s"][:PAIRS][both] for table in (slow, fast)]
     ratio = found.answers["time_s_ratio"]
     assert (ratio.is_ratio, ratio.pairs, ratio.unit) == (True, both.sum(), "s")
     assert ratio.difference.value == pytest.approx(np.exp(np.log(times[1] / times[0]).mean()) - 1.0)
-    assert "36 pairs on 12 beds" in found.of
+    assert f"{PAIRS} pairs on 12 beds" in found.of
     assert list(found.settings) == ["delivery.speed"]
 
 
@@ -257,7 +259,7 @@ def test_soil_is_inferred_with_an_emulator(pair: tuple[Path, Path], tmp_path: Pa
 
 
 def test_studies_that_cannot_be_paired_are_refused(pair: tuple[Path, Path], tmp_path: Path) -> None:
-    other = made(tmp_path / "other", seed=3, journey={"count": 24})
+    other = made(tmp_path / "other", seed=3, journey={"count": 14})
     with pytest.raises(
         ValueError, match=r"cannot be paired: run 12 has bed 1 in A and 3 in B .* give both the same seed"
     ):

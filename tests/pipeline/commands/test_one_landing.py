@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -14,17 +15,17 @@ import pytest
 from scipy import stats
 from typer.testing import CliRunner
 
-from lithobrake.campaign import LocalExecutor, Record, read_records
+from lithobrake.campaign import Record, read_records
 from lithobrake.cli import app
+from lithobrake.compilation.disk_cache import DiskCache
 from lithobrake.pipeline import OneJourney, follow_one, land_one, landing_inputs, rare_failure, run_study
-from lithobrake.pipeline.commands import rare_landings
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.job import Silent
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.pipeline.site import Site, with_site_gravity
 from lithobrake.results import StudyResults, open_study
 from lithobrake.study import StudySource, read_study
-from lithobrake.touchdown import land
+from lithobrake.touchdown import bed_library, land
 from lithobrake.touchdown.lander_model import lander
 from lithobrake.touchdown.touchdown_model import landing
 from lithobrake.vocabulary.outcomes import JourneyEnd
@@ -35,6 +36,18 @@ from .soil_journeys import SOIL_JOURNEYS
 
 REGION = "region = { x = [-0.03, 0.03], y = [-0.02, 0.02] }\n"
 TEXT = f"{few_grains(30, 0.54, 0.05)}{REGION}[journey]\ntouchdowns = 1\n"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def library(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Several of these tests land on the same beds, which are poured once."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LITHOBRAKE_CACHE", str(tmp_path_factory.mktemp("beds")))
+        beds = DiskCache("beds", "beds", 10**9)
+        assert beds.folder is not None
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(bed_library, "_library", lambda size: beds)
+        yield
 
 
 @pytest.fixture
@@ -359,11 +372,8 @@ def test_one_that_is_stopped_ends_with_the_same_bits_and_makes_no_landing_twice(
     def ended() -> dict[str, Record]:
         return {one.key: one for one in open_study(tmp_path / "out").ledger if one.ended}
 
-    with pytest.MonkeyPatch.context() as patch:
-        # Landings that come in one by one, from a process of their own.
-        patch.setattr(rare_landings, "LocalExecutor", LocalExecutor)
-        with pytest.raises(StoppedError):
-            rare(tmp_path / "out", shown=Stopping(300))
+    with pytest.raises(StoppedError):
+        rare(tmp_path / "out", shown=Stopping(300))
     before, shown = ended(), Stopping(-1)
     found = rare(tmp_path / "out", shown=shown)
     assert 200 < len(before) < found["landings"]

@@ -21,7 +21,7 @@ from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
 
 from ...synthetic_landings import WEAK
-from ..few_terms import REFITS
+from ..few_terms import REFITS, WITH_REFITS
 from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 ARRIVAL = {
@@ -36,6 +36,8 @@ AIM: dict[str, Any] = {
 FEW = {"design": {"run_count": 48}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 100}}
 
 
+# Refits that follow landers from the options, where others have twice as many.
+FEW_REFITS = REFITS // 2
 # So much resistance that no captured lander rolls far, which takes most of the time elsewhere.
 HARD = {"count": 10, "rolling_friction": 2.0}
 
@@ -47,7 +49,10 @@ def tables(**aim: Any) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
-    return lithobrake.run(tables(), tmp_path_factory.mktemp("aims") / "out", workers=1, model=model)
+    with pytest.MonkeyPatch.context() as patch:
+        for module in WITH_REFITS:
+            patch.setattr(module, "REFIT_COUNT", FEW_REFITS)
+        return lithobrake.run(tables(), tmp_path_factory.mktemp("aims") / "out", workers=1, model=model)
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +63,7 @@ def found(results: StudyResults) -> dict[str, Any]:
 def test_every_aim_has_its_shares_on_both_grounds_with_intervals(results: StudyResults, found: dict[str, Any]) -> None:
     assert [aim["values"] for aim in found["aims"]] == [[v, i] for v in (0.1, 0.3) for i in (10.0, 40.0, 60.0)]
     rows = read_rows(results.folder / "aim.csv", ("ground", "aim", "status"), "")
-    assert len(rows) == 2 * 6 * found["lander_count"] == 2 * 6 * 2 * REFITS
+    assert len(rows) == 2 * 6 * found["lander_count"] == 2 * 6 * 2 * FEW_REFITS
     for number, aim in enumerate(found["aims"]):
         for ground in ("soil", "hard"):
             ends = [row["status"] for row in rows if row["ground"] == ground and int(row["aim"]) == number]

@@ -1,9 +1,7 @@
 """Beds poured at once, one a worker: with the bits of one after the other, and whatever breaks."""
 
 import os
-import signal
-import subprocess
-import sys
+import random
 import time
 import tomllib
 from collections.abc import Iterator
@@ -27,6 +25,7 @@ from lithobrake.touchdown import bed_library
 from ...command_line import lithobrake
 from ...few_grains import few_grains
 from ...quick_studies import OwnProcess
+from ..killed_studies import kill, start
 
 TEXT = few_grains(30, 0.54, 0.05).replace("[grain]", "bed_count = 3\n[grain]") + "[journey]\ntouchdowns = 1\n"
 STUDY = check_tables(tomllib.loads(TEXT), Path())
@@ -111,12 +110,12 @@ def test_beds_of_two_workers_have_the_bits_of_one_after_the_other(
     poured: tuple[Path, str, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(bed_library, "_library", lambda size: None)
-    for name in (NAMES[0], NAMES[2]):
-        told = pour(tmp_path, (name,))
-        assert told.works[0] == (0, 1, "compiling kernels")
-        assert told.works[-1][2].startswith(f"bed {name[9]} of 3: ".replace("bed 2", "bed 3").replace("bed 0", "bed 1"))
-    assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path, NAMES[0], NAMES[2])
-    assert len(set(content(tmp_path, NAMES[0], NAMES[2]))) == 2
+    told = pour(tmp_path, (NAMES[2],))
+    assert told.works[0] == (0, 1, "compiling kernels")
+    assert told.works[-1][2].startswith("bed 3 of 3: ")
+    assert content(poured[0], NAMES[2]) == content(tmp_path, NAMES[2])
+    # The first bed is another one; a cluster pours it again below.
+    assert content(poured[0], NAMES[0]) != content(poured[0], NAMES[2])
 
 
 def test_beds_of_the_library_ask_no_worker_and_several_failures_are_one_sentence(
@@ -153,33 +152,30 @@ def test_beds_of_a_dask_cluster_have_the_same_bits(poured: tuple[Path, str, int]
     assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path, NAMES[0], NAMES[2])
 
 
-def start(folder: Path, workers: int) -> "subprocess.Popen[str]":
-    words = [sys.executable, "-m", "lithobrake", "bed", folder / "study.toml", "--out", folder / "out", "--workers",
-        workers]  # fmt: skip
-    # What runs in the background of a shell ignores the signal, and so would what it starts.
-    return subprocess.Popen(list(map(str, words)), stderr=subprocess.PIPE, text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))  # fmt: skip
-
-
-@pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="the workers are found in /proc (Linux)")
 def test_beds_that_are_stopped_and_killed_end_with_the_same_bits(
     poured: tuple[Path, str, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Without a library nothing of what was stopped is found again but in the folder.
     monkeypatch.setenv(bed_library.SIZE_VARIABLE, "0")
-    (tmp_path / "study.toml").write_text(TEXT)
-    for blow, code, workers in ((signal.SIGTERM, 143, 1), (signal.SIGKILL, -9, 2)):
-        process, limit = start(tmp_path, workers), time.monotonic() + 120
-        # Of three beds one is there, and another one or two are under way.
-        while not list((tmp_path / "out" / "beds").glob("*.h5")) and time.monotonic() < limit:
-            time.sleep(0.01)
-        process.send_signal(blow)
-        said = process.communicate(timeout=60)[1]
-        assert process.returncode == code, said
-        assert (code < 0) or "Every finished run is kept; to continue" in said
-        for path in (tmp_path / "out" / "beds").glob("*.h5"):
+    study, out, chance = tmp_path / "study.toml", tmp_path / "out", random.Random(1)
+    study.write_text(TEXT)
+    for code, workers in ((143, 1), (-9, 2)):
+        for path in (out / "beds").glob("*.h5"):
             path.unlink()
-    ended = lithobrake("bed", tmp_path / "study.toml", "--out", tmp_path / "out", "--workers", 1)
+        process, limit = start(study, out, workers, "bed"), time.monotonic() + 120
+        # Of three beds one is there, and another one or two are under way.
+        while not list((out / "beds").glob("*.h5")) and time.monotonic() < limit:
+            time.sleep(0.01)
+        if code < 0:
+            kill(process, "coordinator", chance)
+        else:
+            process.terminate()
+            process.join(timeout=60)
+        said = (tmp_path / "said.txt").read_text()
+        assert process.exitcode == code, said
+        assert (code < 0) or "Every finished run is kept; to continue" in said
+    ended = lithobrake("bed", study, "--out", out, "--workers", 1)
     assert ended.returncode == 0, ended.stderr
-    assert content(poured[0], NAMES[0], NAMES[2]) == content(tmp_path / "out", NAMES[0], NAMES[2])
-    assert sorted(path.name for path in (tmp_path / "out" / "beds").glob("*.h5")) == sorted(n[5:] for n in NAMES)
+    assert content(poured[0], NAMES[0], NAMES[2]) == content(out, NAMES[0], NAMES[2])
+    assert sorted(path.name for path in (out / "beds").glob("*.h5")) == sorted(n[5:] for n in NAMES)
