@@ -3,10 +3,10 @@
 import math
 import re
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
-import scoringrules
 
 from lithobrake.scoring.landing_scores import LandingScore, even_score, score_lines, scores
 from lithobrake.scoring.observed_landing import Measured, ObservedLanding, archive, past_landing, read_observation
@@ -119,7 +119,9 @@ def test_landings_without_weight_are_none(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("groups", "each"), [(12, 1), (24, 5)])
-def test_intervals_of_a_score_hold_the_score_of_the_distribution(groups: int, each: int) -> None:
+def test_intervals_of_a_score_hold_the_score_of_the_distribution(
+    scoringrules: ModuleType, groups: int, each: int
+) -> None:
     """Normal times, observed one standard deviation off: 90 % of 300 intervals hold the closed form."""
     generator, held = np.random.default_rng(7), 0
     score = 100.0 * float(scoringrules.crps_normal(1.0, 0.0, 1.0))

@@ -1,10 +1,10 @@
 """Scores against closed forms and against another library."""
 
 import math
+from types import ModuleType
 
 import numpy as np
 import pytest
-import scoringrules
 
 from lithobrake.scoring.proper_scores import crps, energy_score, log_score, probability_below
 
@@ -14,13 +14,13 @@ def test_one_value_is_scored_by_its_distance() -> None:
     assert energy_score([[1.0, 2.0, 2.0]], [0.0, 0.0, 0.0]).of() == 3.0
 
 
-def test_an_error_makes_a_normal_law_of_one_value() -> None:
+def test_an_error_makes_a_normal_law_of_one_value(scoringrules: ModuleType) -> None:
     """The CRPS of a normal law at its mean is (sqrt 2 - 1) / sqrt pi of its standard deviation [Gneiting-2007]."""
     assert crps([2.0], 2.0, 0.5).of() == pytest.approx(0.5 * (math.sqrt(2.0) - 1.0) / math.sqrt(math.pi), rel=1e-12)
     assert crps([1.0], 2.5, 0.5).of() == pytest.approx(float(scoringrules.crps_normal(2.5, 1.0, 0.5)), rel=1e-9)
 
 
-def test_samples_have_the_score_of_another_library() -> None:
+def test_samples_have_the_score_of_another_library(scoringrules: ModuleType) -> None:
     values = np.random.default_rng(1).gamma(2.0, 3.0, 200)
     for observed in (0.5, 6.0, 30.0):
         found = float(scoringrules.crps_ensemble(observed, values, estimator="fair"))
@@ -40,7 +40,9 @@ def test_weights_count_in_both_means() -> None:
 
 
 @pytest.mark.parametrize("count", [4, 12, 60])
-def test_the_score_of_a_small_sample_is_in_the_mean_that_of_its_distribution(count: int) -> None:
+def test_the_score_of_a_small_sample_is_in_the_mean_that_of_its_distribution(
+    scoringrules: ModuleType, count: int
+) -> None:
     """Of a standard normal law at 0.3: [Gneiting-2007], Equation 5 in closed form."""
     generator = np.random.default_rng(count)
     found = [crps(generator.normal(size=count), 0.3).of() for _ in range(3000)]
