@@ -227,8 +227,8 @@ def of_plates(axis: Axes) -> None:
 
 def draw() -> None:
     """Six cases, each in a panel."""
-    with figure(PAGES / "low_speed.png", 2, 3, (11.0, 7.6), dpi=150) as (_, axes):
-        (mascot, gravities, shell), (philae, pads, plates) = np.reshape(axes, (2, 3))
+    with figure(PAGES / "low_speed.png", 3, 2, (8.0, 10.5), dpi=150) as (_, axes):
+        (mascot, gravities), (shell, philae), (pads, plates) = np.reshape(axes, (3, 2))
         names = list(dict.fromkeys(row["setting"] for row in rows_of("lander_on_beds")))
         of_settings(mascot, "lander_on_beds", "ratio", names)
         mascot.set(xlabel="speed ratio", title="MASCOT on beds")
