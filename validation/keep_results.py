@@ -1,6 +1,6 @@
 """Keep what a finished study found, in files small enough for the repository.
 
-    python validation/keep_results.py STUDY_FOLDER --command "lithobrake run scenarios/paper.toml" --log FILE
+    python validation/keep_results.py STUDY_FOLDER --command "lithobrake run scenarios/paper.toml" --log FILE --load 2
 
 Copies study, summary, expansions, emulator or journeys, and figures to showcase/NAME, NAME being that of the folder;
 writes the ledger as CSV and a contact sheet of the landing that the study shows; and notes with which command, on what
@@ -77,6 +77,7 @@ def keep(study: Path, out: Path) -> None:
 
 def main() -> None:
     parser = command_line(__doc__, "study", command=str, log=Path, out=ROOT / "showcase")
+    parser.add_argument("--load", type=float, required=True, help="processes that shared the machine while it ran")
     parser.add_argument(
         "--kept-landings", action="store_true", help="the landings are those of the origin that is there (kept_runs.py)"
     )
@@ -85,7 +86,7 @@ def main() -> None:
     earlier = read_document(out / "origin.json") if given.kept_landings else {}
     keep(given.study, out)
     log = given.log.read_text()
-    made = {**origin(""), "command": given.command, **times(log), "stages": stages(log)}
+    made = {**origin(""), "load": given.load, "command": given.command, **times(log), "stages": stages(log)}
     if earlier:
         keys = ("date", "machine", "command", "load", "wall_s", "cpu_s")
         made["landings"] = earlier.get("landings") or {key: earlier[key] for key in keys}
