@@ -42,7 +42,7 @@ def _block(block: str) -> str:
         items = f"\n{block}".split("\n- ")[1:]
         filled = [textwrap.fill("- " + " ".join(item.split()), WIDTH, subsequent_indent="  ") for item in items]
         return "\n".join(filled)
-    if block.startswith(("|", "#", "!", "```", "---")):
+    if block.startswith(("|", "#", "!", "```", "---")) or "\n```" in block:
         return block
     return textwrap.fill(block, WIDTH, break_on_hyphens=False)
 
