@@ -126,7 +126,7 @@ def main(folder: str, lander_count: int) -> Counter[str]:
     for end, count in ends.most_common():
         hours, touchdowns = (np.median([one[part] for one in found if one[0] == end]) for part in (1, 2))
         share = 100.0 * count / lander_count
-        print(f"{share:5.1f} % {end}: in the median after {hours / 3600.0:.1f} h and {touchdowns:.0f} touchdowns")
+        print(f"{share:5.1f} % {end}: in the median after {hours / 3600.0:.1f} h; touchdowns: {touchdowns:.0f}")
     return ends
 
 

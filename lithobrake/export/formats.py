@@ -11,7 +11,7 @@ from lithobrake.export.czml import write_czml
 from lithobrake.export.ephemerides import ephemeris_names, write_ephemerides, write_spk
 from lithobrake.export.flown import ExportOptions
 from lithobrake.export.maps import map_names, point_names, write_geojson, write_geotiff
-from lithobrake.export.shape_tables import write_facets, write_plates
+from lithobrake.export.shape_tables import facet_names, write_facets, write_plates
 from lithobrake.files.atomic import make_folder, refuse_existing
 from lithobrake.results import MovingBodies, StudyResults
 from lithobrake.view import contact_sheet, write_vtkhdf
@@ -59,7 +59,7 @@ KINDS = {
     "spk": Kind(_always("flights.bsp", "body.tpc"), write_spk),
     "czml": Kind(_always("landers.czml"), write_czml),
     "plates": Kind(_always("body.plates.txt"), write_plates),
-    "facets": Kind(_always("facets.csv", "facets.fits"), write_facets),
+    "facets": Kind(facet_names, write_facets),
     "geotiff": Kind(map_names, write_geotiff),
     "geojson": Kind(point_names, write_geojson),
     "bounce-law": Kind(_always(LAW, *READERS), write_bounce_law),

@@ -56,6 +56,16 @@ def _cards(cards: list[tuple[str, Any, str]]) -> Iterator[str]:
         yield f"{key:<8}= {written}{f' / {comment}' if comment else ''}"[:CARD].ljust(CARD)
 
 
+def facet_names(results: StudyResults, _: ExportOptions) -> list[str]:
+    """The files of facets. Raises ValueError where a study follows journeys, whose flights nobody counted by facet."""
+    if results.study["journey"]["touchdowns"] != 1:
+        raise ValueError(
+            f"{results.folder} follows journeys, and facets have the impacts of first bounces: leave facets out, or "
+            "take geotiff or geojson, which have the places of rest"
+        )
+    return ["facets.csv", "facets.fits"]
+
+
 def write_facets(results: StudyResults, paths: Sequence[Path], chosen: ExportOptions) -> None:
     """Write a row a facet as CSV and as a FITS table; a number that a facet does not have is left empty, and NaN."""
     table, (text, fits) = facet_table(results), paths

@@ -341,6 +341,12 @@ def test_contradictions_are_refused(delivered: StudyResults, tmp_path: Path, wro
         written(delivered, tmp_path, "oem", **wrong)
 
 
+def test_facets_of_journeys_are_refused_before_anything_is_written(delivered: StudyResults, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="leave facets out, or take geotiff or geojson"):
+        export_study(delivered, tmp_path / "out", ["plates", "facets"])
+    assert not (tmp_path / "out").exists()
+
+
 def test_icrf_without_a_pole_and_attitudes_without_journeys_are_refused(results: StudyResults, tmp_path: Path) -> None:
     sample = int(results.flights["sample"][0])
     with pytest.raises(ValueError, match=r"has no site\.pole_right_ascension_deg"):

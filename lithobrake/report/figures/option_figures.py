@@ -1,6 +1,7 @@
 """Delivery options as maps, differences between studies, and the way down to rare limit states."""
 
 import math
+import textwrap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -241,7 +242,7 @@ def _draw_difference(axes: Axes, label: str, rows: Sequence[DifferenceRow]) -> N
             axes.plot(row.difference.bounds, [y, y], color=LANDER, linewidth=2.4, solid_capstyle="butt")
         axes.plot(row.difference.value, y, "o", color=INK, markersize=4.5)
         axes.text(1.03, y, row.words, transform=axes.get_yaxis_transform(), va="center_baseline", fontsize=8)
-    axes.set_yticks(range(len(rows) - 1, -1, -1), [row.name for row in rows])
+    axes.set_yticks(range(len(rows) - 1, -1, -1), [textwrap.fill(row.name, 34) for row in rows])
     axes.set_ylim(-0.6, len(rows) - 0.4)
     found = [row.difference for row in rows]
     reach = max(abs(end or 0.0) for one in found for end in (one.value, one.lower, one.upper)) or 1.0
