@@ -294,19 +294,22 @@ def _kept(runs: TrainingRuns, candidates: Sequence[LatentTerms], group: NDArray[
     """Those of which the runs support the terms, scored; no inputs always are: that is the law to fall back on."""
     ones = np.ones(len(runs.x))
     few = [one for one in candidates if one.degree == 0 or RUNS_PER_TERM * one.parameter_count <= len(runs.y)]
-    problems = [LatentProblem.of_runs(runs, terms, ones) for terms in few]
-    return [_held_out(one, group) for one in problems if one.scatters]
+    found = [_held_out(LatentProblem.of_runs(runs, terms, ones), group) for terms in few]
+    return [one for one in found if one is not None]
 
 
-def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> HeldOut:
-    """Follow the noise down until runs in groups left out are foretold worse than before."""
+def _held_out(problem: LatentProblem, group: NDArray[np.int64]) -> HeldOut | None:
+    """Follow the noise down until runs in groups left out are foretold worse than before; None where the target, or
+    what a fold leaves of it, does not scatter.
+    """
     fold = folds_of(group, FOLDS)
     tests = [fold == number for number in range(int(fold.max()) + 1)]
+    rests = [problem.of(~test) for test in tests]
+    if not all(one.scatters for one in (problem, *rests)):
+        return None
     best = HeldOut(problem.terms, 0, np.full(len(group), -np.inf))
     # All folds go down together, so that what single runs make of a little noise need not be found.
-    for count, steps in enumerate(
-        zip(*(problem.of(~test).path(NOISE_SHARES, OF_SCORED) for test in tests), strict=True), 1
-    ):
+    for count, steps in enumerate(zip(*(rest.path(NOISE_SHARES, OF_SCORED) for rest in rests), strict=True), 1):
         logarithms = np.empty(len(group))
         folds = tuple((test, *step) for test, step in zip(tests, steps, strict=True))
         for test, noise, parameters in folds:

@@ -9,6 +9,7 @@ from scipy import special
 from lithobrake.emulator.latent_variable import NOISE_SHARES, HeldOut, LatentProblem, LatentTerms
 from lithobrake.emulator.training_runs import TrainingRuns
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.normal_law import mean_distance
 
 # Values of the noise in an ensemble, of equal probability: so many that two branches are no set of single values.
 NOISE_VALUES = 50
@@ -30,8 +31,8 @@ class Normals:
 
     def crps(self, coordinates: Array) -> Array:
         """Continuous ranked probability score of a coordinate at each point [point_count]. Source: [Grimit-2006]."""
-        away = _mean_distance(coordinates[:, None] - self.means, self.deviation)
-        apart = _mean_distance(self.means[:, :, None] - self.means[:, None], np.sqrt(2.0) * self.deviation[:, None])
+        away = mean_distance(coordinates[:, None] - self.means, self.deviation)
+        apart = mean_distance(self.means[:, :, None] - self.means[:, None], np.sqrt(2.0) * self.deviation[:, None])
         return np.asarray((self.weights * (away - 0.5 * (apart @ self.weights[:, :, None])[:, :, 0])).sum(axis=1))
 
     def averaged(self, function: Callable[[Array], Array], coordinates: Array) -> Array:
@@ -85,10 +86,3 @@ class StochasticExpansion:
         noise = self.noise * special.ndtri((np.arange(NOISE_VALUES) + 0.5) / NOISE_VALUES)
         weights = np.repeat(normals.weights / NOISE_VALUES, NOISE_VALUES, axis=1)
         return (normals.means[:, :, None] + noise).reshape(len(points), -1), weights
-
-
-def _mean_distance(means: Array, deviation: Array) -> Array:
-    """Mean absolute value of normals."""
-    away = means / deviation
-    density = np.exp(-0.5 * away**2) / np.sqrt(2.0 * np.pi)
-    return np.asarray(deviation * (away * (2.0 * special.ndtr(away) - 1.0) + 2.0 * density))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lithobrake.export.flown import ExportOptions, Flown
+from lithobrake.export.flown import ExportOptions, Flown, has_journeys
 from lithobrake.files.atomic import write_rows, write_whole
 from lithobrake.results import Column, StudyResults, Table
 
@@ -58,7 +58,7 @@ def _cards(cards: list[tuple[str, Any, str]]) -> Iterator[str]:
 
 def facet_names(results: StudyResults, _: ExportOptions) -> list[str]:
     """The files of facets. Raises ValueError where a study follows journeys, whose flights nobody counted by facet."""
-    if results.study["journey"]["touchdowns"] != 1:
+    if has_journeys(results):
         raise ValueError(
             f"{results.folder} follows journeys, and facets have the impacts of first bounces: leave facets out, or "
             "take geotiff or geojson, which have the places of rest"

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from scipy import special
 
 from lithobrake.vocabulary.array_types import Floats
+from lithobrake.vocabulary.normal_law import mean_distance
 
 # Draws of the measurement error of a place, and their seed.
 ERROR_DRAWS, SEED = 20, 0
@@ -51,8 +52,8 @@ def crps(values: ArrayLike, observed: float, error: float = 0.0) -> DistanceScor
     Source: [Gneiting-2007], Equation 21; for normal mixtures [Grimit-2006].
     """
     sample = np.asarray(values, dtype=np.float64)
-    within = _mean_distance(sample[:, None] - sample, math.sqrt(2.0) * error)
-    return DistanceScore(_mean_distance(sample - observed, error), within)
+    within = mean_distance(sample[:, None] - sample, math.sqrt(2.0) * error)
+    return DistanceScore(mean_distance(sample - observed, error), within)
 
 
 def energy_score(places: ArrayLike, observed: ArrayLike, error: float = 0.0) -> DistanceScore:
@@ -102,13 +103,3 @@ def probability_below(values: ArrayLike, observed: float, error: float, weights:
     apart, share = observed - np.asarray(values, dtype=np.float64), np.asarray(weights, dtype=np.float64)
     below = special.ndtr(apart / error) if error > 0.0 else np.where(apart == 0.0, 0.5, apart > 0.0)
     return float(share @ below / share.sum())
-
-
-def _mean_distance(mean: Floats, deviation: float) -> Floats:
-    """Mean of the absolute value of a normal variable of this mean and standard deviation."""
-    if deviation == 0.0:
-        return np.abs(mean)
-    z = mean / deviation
-    density = np.exp(-0.5 * z * z) / math.sqrt(2.0 * math.pi)
-    found: Floats = mean * (2.0 * special.ndtr(z) - 1.0) + 2.0 * deviation * density
-    return found

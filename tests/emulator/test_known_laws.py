@@ -112,6 +112,18 @@ def test_a_bound_that_is_far_bends_nothing(centre: float, distant: tuple[int, ..
 
 
 @pytest.mark.usefixtures("quick")
+@pytest.mark.parametrize("lonely", [slice(10), slice(3, 4)])
+def test_an_output_that_scatters_in_one_group_alone_has_no_expansion(lonely: slice) -> None:
+    """Without that group nothing scatters, and a density has no width."""
+    inputs = inputs_of(1)
+    x, y = latin_hypercube(inputs, 60, seed=1), np.zeros(60)
+    y[lonely] = 1.0 + x[lonely, 0]
+    model = emulator.fit(inputs, x, y, groups=np.arange(60) // 10)
+    assert model.expansion is None
+    assert np.isfinite(model.sample(x, 20)).all()
+
+
+@pytest.mark.usefixtures("quick")
 def test_an_emulator_does_not_lose_to_its_runs() -> None:
     """On laws without inputs that count, chosen laws hardly pass the gate, and those that do cost little."""
     inputs, passed = inputs_of(2), 0
