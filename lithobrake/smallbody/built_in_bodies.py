@@ -55,13 +55,13 @@ def dimorphos(*, partner: bool = True, extents: Sequence[float] | None = None) -
 
 def built_in_body(name: str, *, partner: bool = True, extents: Sequence[float] | None = None) -> Body:
     """The built-in body of a name in lower case, as the functions of these names make it."""
-    known = BUILT_IN_BODIES[name]
+    known, given = BUILT_IN_BODIES[name], None if extents is None else tuple(extents)
     if not partner:
-        return _alone(known, extents)
+        return _alone(known, given)
     assert known.partner is not None
     assert known.orbit_period is not None
     other = Partner(_alone(BUILT_IN_BODIES[known.partner]), period=known.orbit_period, longitude_deg=0.0)
-    return replace(_alone(known, extents), partner=other)
+    return replace(_alone(known, given), partner=other)
 
 
 @lru_cache(maxsize=8)
@@ -104,7 +104,9 @@ def _ball(diameter: float, name: str) -> Shape:
     return Shape(round_one.vertices * (size * np.array([1.0, 1.0, stretch])), round_one.faces, name=name)
 
 
-def _alone(known: KnownBody, extents: Sequence[float] | None = None) -> Body:
+# Moments, tables and grids of a shape are made once, and serve all who ask for its body.
+@lru_cache(maxsize=8)
+def _alone(known: KnownBody, extents: tuple[float, ...] | None = None) -> Body:
     shape = top_shape(extents or known.extents or (), known.ridge_height, name=known.key)
     return Body(shape, known.mass, known.spin_period, known.key)
 
