@@ -9,7 +9,8 @@ from scipy.ndimage import distance_transform_cdt
 from lithobrake.compilation.compiled import compiled, kernel, large_kernel
 from lithobrake.vocabulary.array_types import Floats, Integers, ShortIntegers
 
-LARGEST = 160  # cells along the longest side: 20 MB of indices, and few facets in a cell
+# Cells along the longest side: some five to the edge of a facet, as more are no faster, and at most 24 MB of indices.
+CELLS, LARGEST = 2.0, 160  # of the square root of the number of facets, and at most
 PAD = 1e-3  # of a cell: covers the rounding of a point that lies on a facet and on a cell's side
 RIM = 1e-9  # part of a facet by which it is widened, so that a line through a common edge meets at least one facet
 
@@ -35,12 +36,12 @@ class Grid(NamedTuple):
 
     @classmethod
     def of(cls, vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float | None = None) -> "Grid":
-        """Sort the facets of a mesh into cells of an edge [m], by default LARGEST to the longest side."""
+        """Sort the facets of a mesh into cells of an edge [m], by default as many to the longest side as CELLS says."""
         corner = vertices[faces]
         low, high = corner.min(axis=1), corner.max(axis=1)
         lower, upper = low.min(axis=0), high.max(axis=0)
         if edge is None:
-            edge = float((upper - lower).max()) / LARGEST
+            edge = float((upper - lower).max()) / min(CELLS * np.sqrt(len(faces)), LARGEST)
         # A cell and a half, so that the outermost layer is empty and `clearance` can count on it.
         lower = lower - 1.5 * edge
         size = np.ceil((upper - lower) / edge).astype(np.int64) + 2
