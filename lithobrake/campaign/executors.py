@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 # How often running calls are looked at when they have limits [s].
 _POLL_INTERVAL = 0.2
+# A process that has had no call for so long [s] ends, and gives its memory back: starting one takes two seconds.
+IDLE_TIME = 10.0
 # So many processes in a row that die before they begin with a call are no accident.
 _STILLBORN_LIMIT = 3
 
@@ -43,7 +45,7 @@ class WorkerDiedError(RuntimeError):
 
 
 class LocalExecutor(Executor):
-    """A pool of processes, each with one thread; one that dies is replaced.
+    """A pool of processes, each with one thread; one that dies is replaced, and one without calls ends after a while.
 
     Processes are interpreters of their own, never forks: a fork of a process that has threads may hang. They import the
     script that is run here only where a call names something that it defines. They end with this one, however it ends.
@@ -120,8 +122,9 @@ class LocalExecutor(Executor):
                 busy = [worker for worker in self._workers if worker.call]
                 has_limits = any(worker.call.limits != Limits() for worker in busy if worker.call)
                 pipes = [self._wake_receiver, *(worker.connection for worker in busy)]
-                # Without limits there is nothing to look at between two messages.
-                ready = wait(pipes, timeout=_POLL_INTERVAL if has_limits else None)
+                next_end = self._end_idle()
+                # Without limits there is nothing to look at between two messages but how long others are idle.
+                ready = wait(pipes, timeout=_POLL_INTERVAL if has_limits else next_end)
                 if self._wake_receiver in ready:
                     self._wake_receiver.recv_bytes()
                 for worker in busy:
@@ -155,6 +158,17 @@ class LocalExecutor(Executor):
                 with self._lock:
                     self._waiting.appendleft(call)
 
+    def _end_idle(self) -> float | None:
+        """End processes that have been idle for too long; how long until the next of them [s], None: none is idle."""
+        idle = [worker for worker in self._workers if worker.call is None]
+        now = time.monotonic()
+        for worker in idle:
+            if worker.idle_since + IDLE_TIME <= now:
+                self._workers.remove(worker)
+                worker.end()
+        left = [worker.idle_since + IDLE_TIME - now for worker in idle if worker in self._workers]
+        return min(left, default=None)
+
     def _receive(self, worker: Worker) -> None:
         try:
             said = worker.connection.recv_bytes()
@@ -168,7 +182,7 @@ class LocalExecutor(Executor):
         if said == BEGUN:
             worker.begun, self._stillborn_count = time.monotonic(), 0
             return
-        call, worker.call = worker.call, None
+        call, worker.call, worker.idle_since = worker.call, None, time.monotonic()
         # The next call goes out before anybody is told of this one, so that the process need not wait.
         self._hand_out()
         fine, answer = pickle.loads(said)

@@ -12,6 +12,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 import types
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -136,7 +137,8 @@ class Call:
 class Worker:
     """A process, as its coordinator sees it.
 
-    call: that it is at, or None. begun: when it began with it, on the monotonic clock [s].
+    call: that it is at, or None. begun: when it began with it, idle_since: since when it has none, on the monotonic
+    clock [s].
     """
 
     def __init__(self) -> None:
@@ -162,6 +164,7 @@ class Worker:
         self.number = self._process.pid
         self.call: Call | None = None
         self.begun: float | None = None
+        self.idle_since = time.monotonic()
         # One that has died already is found dead by its first call.
         with contextlib.suppress(OSError):
             self.connection.send((sys.path, sys.argv, main_source(), self.mark))
