@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 # How often running calls are looked at when they have limits [s].
 _POLL_INTERVAL = 0.2
 # A process that has had no call for so long [s] ends, and gives its memory back: starting one takes two seconds.
-IDLE_TIME = 10.0
+IDLE_TIME = 20.0
 # So many processes in a row that die before they begin with a call are no accident.
 _STILLBORN_LIMIT = 3
 

@@ -5,7 +5,7 @@ import math
 import os
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -15,6 +15,8 @@ from lithobrake.vocabulary import file_names
 from lithobrake.vocabulary.quantities import JOURNEY, TOUCHDOWN_COST, Quantity, quantity
 
 if TYPE_CHECKING:
+    from pydantic import TypeAdapter
+
     from lithobrake.campaign import Record
     from lithobrake.results.table import Table
 
@@ -178,10 +180,15 @@ class StudyFiles:
 
 def json_values(value: Any) -> Any:
     """Results as objects, lists, numbers, words and None. Raises ValueError for a value that is none of its field."""
+    return _form(type(value)).dump_python(value, mode="json", by_alias=True, exclude_defaults=True, warnings="error")
+
+
+@cache
+def _form(kind: type[Any]) -> "TypeAdapter[Any]":
+    """What reads and writes values of a kind, which takes a tenth of a second to make."""
     from pydantic import TypeAdapter
 
-    form = TypeAdapter[Any](type(value))
-    return form.dump_python(value, mode="json", by_alias=True, exclude_defaults=True, warnings="error")
+    return TypeAdapter(kind)
 
 
 def results_in(kind: type[T], content: Any, place: str = "") -> T:
@@ -190,11 +197,11 @@ def results_in(kind: type[T], content: Any, place: str = "") -> T:
     place: of the value in its file, "results". Raises KeyError for a key that is not there, with its place, and
     ValueError for a value that is none of its field.
     """
-    from pydantic import TypeAdapter, ValidationError
+    from pydantic import ValidationError
 
     try:
         # Of a text a list may become a tuple, and nothing else another thing than it is.
-        result: T = TypeAdapter(kind).validate_json(json.dumps(content), strict=True)
+        result: T = _form(kind).validate_json(json.dumps(content), strict=True)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         lacking = first["loc"][-1:] if first["type"] == "missing" else ()
