@@ -213,8 +213,7 @@ def infer(
 
     if bounce is not None and is_first_contact(folder, bounce):
         with arguments.shown_progress("inference") as progress:
-            progress(0.0, "nowcast")
-            said = nowcast_study(folder, bounce)["statement"]
+            said = nowcast_study(folder, bounce, progress)["statement"]
         made = (folder / f"nowcast.{kind}" for kind in ("json", "csv", "png"))
         written = ", ".join(str(path) for path in made if path.is_file())
         arguments.tell([*said, f"Nowcast: {written}"])

@@ -36,6 +36,7 @@ from lithobrake.pipeline.study_folder import REMEDY, FinishedFolder
 from lithobrake.statements.nowcast import statement
 from lithobrake.study.units import input_units
 from lithobrake.vocabulary.array_types import Array
+from lithobrake.vocabulary.callbacks import Progress, silent
 from lithobrake.vocabulary.file_names import TOUCHDOWN_EMULATOR_FILE
 from lithobrake.vocabulary.outcomes import TouchdownOutcome
 from lithobrake.vocabulary.quantities import (
@@ -275,14 +276,22 @@ def _ellipse(found: Any) -> dict[str, Any]:
     return middle | {"heading_deg": found.heading_deg, "semi_axes_m": axes}
 
 
-def nowcast_study(folder: Path, observation: Path) -> dict[str, Any]:
+def nowcast_study(folder: Path, observation: Path, progress: Progress = silent) -> dict[str, Any]:
     """Nowcast from a first contact, and write nowcast.json, nowcast.csv and a picture into the folder of the study.
 
     Without an answer the table and the picture of another contact go, as they would stand for this one.
+    progress: called with the fraction that is done and what is done next.
     """
     from lithobrake.report.figures.nowcast_figure import write_nowcast_figure
 
+    progress(0.0, "drawing first contacts")
     found = NowcastStudy.open(folder).nowcast(observation)
+    if found.draws.is_reliable:
+        # What content() asks for, one after the other.
+        for done, name in ((0.2, "before"), (0.55, "after")):
+            progress(done, f"following landers from {name} the contact")
+            getattr(found, name)
+    progress(0.9, "summing up")
     content = found.content()
     write_json(folder / NOWCAST, content)
     if not content["is_reliable"]:

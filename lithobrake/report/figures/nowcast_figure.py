@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from lithobrake.files.atomic import atomic_path
 from lithobrake.report.figures.style import INK, INTERACTIONS, LANDER, QUIET, TEST_ALL, figure_style
@@ -16,8 +16,8 @@ from lithobrake.vocabulary.array_types import Array
 from lithobrake.vocabulary.number_words import percent, unit_of_time
 
 BINS = 18
-# Inputs that are drawn, those of which most is learnt first; panels of a row.
-MOST_INPUTS, COLUMNS = 4, 4
+# Panels of the upper row at most: the kinds of ground, and inputs, those of which most is learnt first.
+MOST_PANELS = 4
 WORDS = "grey: before the contact; blue: after it"
 # A range over which values vary by more than this factor is drawn by its logarithm.
 WIDE = 8.0
@@ -43,24 +43,26 @@ def nowcast_figure(
 ) -> Figure:  # fmt: skip
     """The same as a figure: kinds of ground and inputs above, map, time and distance below."""
     figure = Figure(figsize=(9.2, 5.6))
-    figure.subplots_adjust(left=0.07, right=0.985, top=0.9, bottom=0.1, hspace=0.55, wspace=0.3)
-    grid = figure.add_gridspec(2, COLUMNS)
-    inputs = sorted(content["inputs"].items(), key=lambda item: float(item[1]["sd_ratio"]))
+    figure.subplots_adjust(left=0.07, right=0.985, top=0.9, bottom=0.1, hspace=0.55)
+    grid = figure.add_gridspec(2, 1)
     first = 1 if content["ground"] else 0
+    inputs = sorted(content["inputs"].items(), key=lambda item: float(item[1]["sd_ratio"]))[: MOST_PANELS - first]
+    above = grid[0].subgridspec(1, max(1, first + len(inputs)), wspace=0.3)
+    below = grid[1].subgridspec(1, 3, wspace=0.3)
     if content["ground"]:
-        _kinds(figure.add_subplot(grid[0, 0]), content["ground"])
-    for place, (name, one) in enumerate(inputs[: MOST_INPUTS - first]):
-        axes = figure.add_subplot(grid[0, first + place])
+        _kinds(figure.add_subplot(above[0]), content["ground"])
+    for place, (name, one) in enumerate(inputs, start=first):
+        axes = figure.add_subplot(above[place])
         _laws(axes, np.array(one["prior"]), np.array(one["points"]))
         axes.set_xlabel(input_label(name, one["unit"].removeprefix("-")), fontsize=8)
         axes.set_title(f"{percent(one['sd_ratio'])} of sd left", fontsize=8, color=QUIET)
-    _map(figure.add_subplot(grid[1, :2]), before, after, ways)
+    _map(figure.add_subplot(below[0]), before, after, ways)
     times = [one["time_s"][np.isfinite(one["time_s"])] for one in (before, after)]
     size, unit = unit_of_time(float(np.median(np.concatenate(times)))) if sum(map(len, times)) else (1.0, "s")
     for place, (name, factor, words) in enumerate((
         ("time_s", size, f"time to rest [{unit}]"), ("from_contact", 1.0, "from the first contact [m]"),
-    )):  # fmt: skip
-        axes = figure.add_subplot(grid[1, 2 + place])
+    ), start=1):  # fmt: skip
+        axes = figure.add_subplot(below[place])
         _laws(axes, *(one[name][np.isfinite(one[name])] / factor for one in (before, after)))
         axes.set_xlabel(words, fontsize=8)
     figure.text(0.985, 0.985, WORDS, ha="right", va="top", color=QUIET, fontsize=8)
@@ -88,6 +90,8 @@ def _laws(axes: Axes, before: Array, after: Array) -> None:
     if not len(both):
         axes.text(0.5, 0.5, "none known", transform=axes.transAxes, ha="center", color=QUIET)
         return
+    if not len(after):
+        axes.set_title("after the contact: not known", fontsize=8, color=QUIET)
     low, high = np.quantile(both, [0.5 - 0.5 * SHOWN, 0.5 + 0.5 * SHOWN]).tolist()
     is_wide = low > 0.0 and high > WIDE * low
     edges = (np.geomspace if is_wide else np.linspace)(low, max(high, low + 1e-12), BINS + 1)
@@ -97,6 +101,8 @@ def _laws(axes: Axes, before: Array, after: Array) -> None:
             axes.bar(edges[:-1], counts, np.diff(edges), align="edge", **look)
     if is_wide:
         axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+        axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_formatter(NullFormatter())
 
 
