@@ -252,8 +252,11 @@ class Shape:
         that the surface fills.
         """
         p = checked_points(self.name, points)
+        rows = p.reshape(-1, 3)
+        # What is farther from the origin than all vertices, as most of what flies about a partner, needs no sum.
+        inside = np.linalg.norm(rows, axis=1) <= self.radius
         # Halfway between 2 pi on a facet and 4 pi inside, far above the rounding of the sum.
-        inside: NDArray[np.bool_] = self.polyhedron.field(p.reshape(-1, 3))[:, 4] > 3.0 * np.pi
+        inside[inside] = self.polyhedron.field(rows[inside])[:, 4] > 3.0 * np.pi
         return inside.reshape(p.shape[:-1])
 
 
