@@ -44,19 +44,26 @@ def with_distant_bounds(runs: TrainingRuns, indices: Indices, matrix: Array) -> 
 
 def _is_distant(runs: TrainingRuns, column: int, design: TermTable, group: NDArray[np.int64]) -> bool:
     y, lower, upper = (table[:, column] for table in (runs.y, runs.lower, runs.upper))
+    fold = folds_of(group, FOLDS)
+    location, scale = _held_out(design, y, fold)
+    sides = np.array([location - lower, upper - location]) / scale
+    # Most outputs end here, after half of the fits.
+    if not (special.ndtr(-sides).sum(axis=0).mean() < MOST_BEYOND and np.median(sides.min(axis=0)) > DISTANT):
+        return False
     coordinate, slope = with_slope(y, lower, upper)
-    fold, (gain, beyond, away) = folds_of(group, FOLDS), np.empty((3, len(y)))
-    for number in range(int(fold.max()) + 1):
-        test = fold == number
-        bent, straight = (_law(design, one, test) for one in (coordinate, y))
-        scores = [_log_normal_density(one[test], *law) for one, law in ((coordinate, bent), (y, straight))]
-        # Densities of the output and of its coordinate are compared in one unit, to which the slope leads.
-        gain[test] = scores[1] - scores[0] - np.log(slope[test])
-        location, scale = straight
-        sides = np.array([location - lower[test], upper[test] - location]) / scale
-        beyond[test], away[test] = special.ndtr(-sides).sum(axis=0), sides.min(axis=0)
+    bent = _held_out(design, coordinate, fold)
+    # Densities of the output and of its coordinate are compared in one unit, to which the slope leads.
+    gain = _log_normal_density(y, location, scale) - _log_normal_density(coordinate, *bent) - np.log(slope)
     mean, error = mean_by_groups(gain, group)
-    return bool(mean > -error and beyond.mean() < MOST_BEYOND and np.median(away) > DISTANT)
+    return bool(mean > -error)
+
+
+def _held_out(design: TermTable, coordinate: Array, fold: NDArray[np.int64]) -> Array:
+    """Location and scale of a coordinate [run_count] at each run, of fits that have not seen its fold, [2, count]."""
+    found = np.empty((2, len(coordinate)))
+    for number in range(int(fold.max()) + 1):
+        found[:, fold == number] = _law(design, coordinate, fold == number)
+    return found
 
 
 def _law(design: TermTable, coordinate: Array, test: NDArray[np.bool_]) -> tuple[Array, Array]:

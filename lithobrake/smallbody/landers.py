@@ -37,16 +37,17 @@ ENDS = {
 }
 
 
-def on_ground(shape: "Shape", point: np.ndarray) -> np.ndarray:
-    """The place on the ground [m], [3], nearest to a point beside it."""
-    place = point
+def on_ground(shape: "Shape", points: Array) -> Array:
+    """The places on the ground [m], [count, 3], nearest to points beside it."""
+    places = points
     for _ in range(PROJECTIONS):
-        height, facet = shape.nearest(place)
-        place = place - height * shape.normals[facet]
-    if shape.height(place) >= 0.0:
-        return place
+        height, facet = shape.nearest(places)
+        places = places - height[:, None] * shape.normals[facet]
     # Below the ground no flight begins: a point next to an edge, of which the outermost along the radius is taken.
-    return shape.surface_point(*shape.latitude_longitude(point))
+    below = ~(shape.height(places) >= 0.0)
+    if below.any():
+        places[below] = shape.surface_point(*shape.latitude_longitude(points[below]))
+    return places
 
 
 @dataclass(kw_only=True)
@@ -107,9 +108,9 @@ class Landers(LanderStates):
         self.path_length[which] += answers.length
         self.contact_length[which] += answers.length
         self.position[which] += out_of_frame(self.axes[which], answers.way)
-        # Only those that a touchdown has moved: the search for the ground takes one lander at a time.
-        for lander in which[answers.way.any(axis=1)].tolist():
-            self.position[lander] = on_ground(self.grounds[self.ground[lander]].body.shape, self.position[lander])
+        moved = which[answers.way.any(axis=1)]
+        for ground, there in self.on_each(moved):
+            self.position[moved[there]] = on_ground(ground.body.shape, self.position[moved[there]])
         self.end[which] = [str(AFTER[word]) for word in answers.outcome.tolist()]
         self.end[which[(self.ground[which] > 0) & (self.end[which] == JourneyEnd.AT_REST)]] = JourneyEnd.PARTNER
         over = (self.time[which] >= self.duration) | (self.touchdowns[which] >= self.most)

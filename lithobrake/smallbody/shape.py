@@ -12,7 +12,7 @@ from lithobrake.geometry.mesh import closed_faces, mass_properties, thinned
 from lithobrake.geometry.mesh_files import read_mesh
 from lithobrake.geometry.mesh_units import labelled_mesh
 from lithobrake.smallbody.attraction import Gravity
-from lithobrake.smallbody.facet_grid import Grid, heights, outermost_hit, pseudonormals
+from lithobrake.smallbody.facet_grid import Grid, heights, near_heights, outermost_hit, pseudonormals
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.multipole import RADII, Multipole
@@ -243,8 +243,13 @@ class Shape:
     def nearest(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Signed distance to the surface [m] and nearest facet of body-fixed points [m], shape [..., 3]."""
         p = np.ascontiguousarray(checked_points(self.name, points))
-        height, facet = np.empty(p.size // 3), np.empty(p.size // 3, dtype=np.int64)
-        heights(self.corners, self.pseudonormals, p.reshape(-1, 3), height, facet)
+        rows, height, facet = p.reshape(-1, 3), np.empty(p.size // 3), np.empty(p.size // 3, dtype=np.int64)
+        near_heights(self.grid, self.corners, self.pseudonormals, rows, height, facet)
+        # Within a cell of the surface the grid has the nearest facet; all are looked at for what is farther.
+        if len(far := np.flatnonzero(facet < 0)):
+            distant = np.full(len(far), np.nan), np.full(len(far), -1)
+            heights(self.corners, self.pseudonormals, rows[far], *distant)
+            height[far], facet[far] = distant
         return height.reshape(p.shape[:-1]), facet.reshape(p.shape[:-1])
 
     def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
