@@ -1,11 +1,12 @@
 """The beds of a study: what they follow from, and how they are poured, with the kernels compiled first."""
 
 import logging
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import FIRST_COMPLETED, wait
-from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from lithobrake.campaign import LocalExecutor, available_cores
@@ -31,28 +32,60 @@ def compile_kernels(tell: Callable[..., None], busy: int = 0, joined: bool = Fal
     """Compile what beds and landings call, unless it lies on disk; workers that start afterwards find it there.
 
     tell: called as the progress of a job, with how many kernels are done, of how many. busy: cores that compile
-    something else. On one that idles a second process compiles a part of the engine: sooner done, at more CPU time,
-    as what both parts call is prepared twice. joined: for landers with parts on hinges.
+    something else. joined: for landers with parts on hinges.
     """
     from lithobrake.compilation.compiled import disk_cache, lies_on_disk, watched
     from lithobrake.dem.example_world import step_locally, step_together
     from lithobrake.dem.stepping.time_loop import advance
 
     tell(0, 1, WHAT)
+    if disk_cache("dem").keeps and not lies_on_disk(advance):
+        _compile_apart(tell, 2 if available_cores() >= 2 + busy else 1, joined)
+    # Loads what lies on disk, and compiles the rest.
     with watched("dem", lambda done, total: tell(done, total, WHAT, f"{done} of {total} kernels")):
-        if lies_on_disk(advance) or available_cores() < 2 + busy or not disk_cache("dem").keeps:
-            step_locally(joined)
-        else:
-            with _meanwhile(step_together):
-                step_locally(joined)
+        step_locally(joined)
         step_together()
     tell(1, 1, WHAT)
 
 
-def compile_flights(job: Job) -> int:
-    """Have one of several workers of this machine compile what flights and journeys call, unless it lies on disk.
+def _compile_apart(tell: Callable[..., None], process_count: int, joined: bool) -> None:
+    """Compile in processes that end then, as a compiler leaves 300 MB behind; two are sooner done, at more CPU time.
 
-    Returns how many workers are at it. Nobody waits for it; where it fails the flights will compile, and say why.
+    What both of them call is prepared twice. Where one fails, nothing has been compiled.
+    """
+    from lithobrake.compilation.compiled import announce
+    from lithobrake.dem.example_world import step_locally, step_together
+
+    announce("dem")
+    executor = LocalExecutor(process_count)
+    try:
+        with TemporaryDirectory() as folder:
+            count = Path(folder) / "count"
+            pending = {
+                executor.submit(_quietly, _counted, count, partial(step_locally, joined)),
+                executor.submit(_quietly, step_together),
+            }
+            while pending:
+                _, pending = wait(pending, _POLL_INTERVAL)
+                # Empty while it is being written.
+                if count.exists() and (words := count.read_text().split()):
+                    tell(*map(int, words), WHAT, f"{words[0]} of {words[1]} kernels")
+    finally:
+        executor.shutdown(cancel_futures=True)
+
+
+def _counted(count: Path, function: Callable[[], None]) -> None:
+    """Call a function; write how many kernels it has compiled, and how many there are."""
+    from lithobrake.compilation.compiled import watched
+
+    with watched("dem", lambda done, total: count.write_text(f"{done} {total}")):
+        function()
+
+
+def compile_flights(job: Job) -> int:
+    """Have a process compile what flights and journeys call where there are several workers, unless it lies on disk.
+
+    Returns how many processes are at it. Nobody waits for it; where it fails the flights will compile, and say why.
     """
     from lithobrake.compilation.compiled import disk_cache, lies_on_disk
     from lithobrake.smallbody.integration import integrate_flights
@@ -62,7 +95,10 @@ def compile_flights(job: Job) -> int:
     # Without a cache on the disk no other process would find what was compiled.
     if lies_on_disk(integrate_flights) or not disk_cache("smallbody").keeps:
         return 0
-    job.executor.submit(_quietly, fly_briefly, job.study)
+    executor = LocalExecutor(1)
+    executor.submit(_quietly, fly_briefly, job.study)
+    # It ends when it has compiled, with what a compiler leaves behind.
+    executor.shutdown(wait=False)
     return 1
 
 
@@ -78,18 +114,6 @@ def fly_briefly(study: Study) -> None:
     site.body.effective_acceleration(origin)
     site.body.shape.nearest(origin)
     fly(site.body, origin, axes[:, 2], 1.0, gravity=study.flight.gravity)
-
-
-@contextmanager
-def _meanwhile(function: Callable[[], None]) -> Iterator[None]:
-    """Have another process call a function, and wait until it has; where that fails, nothing has been compiled."""
-    executor = LocalExecutor(1)
-    try:
-        called = executor.submit(_quietly, function)
-        yield
-        wait([called])
-    finally:
-        executor.shutdown(cancel_futures=True)
 
 
 def _quietly(function: Callable[..., None], *arguments: object) -> None:
