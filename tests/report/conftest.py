@@ -1,7 +1,6 @@
 """Small finished studies and their pages, made once for all tests of the page."""
 
 from collections.abc import Callable
-from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -16,10 +15,10 @@ from .finished_studies import asked_study, first_study, paper_study
 
 
 def finished(factory: pytest.TempPathFactory, study: Callable[[Path], None]) -> Path:
-    """The folder of a study with its page; PNG files of the paper study alone are drawn, others are blank."""
+    """The folder of a study with its page, whose PNG files are blank."""
 
     def make(folder: Path) -> None:
-        with quick_studies(), nullcontext() if study is paper_study else blank_pictures("png"):
+        with quick_studies(), blank_pictures("png"):
             study(folder)
             write_report(folder)
 
