@@ -11,18 +11,28 @@ from lithobrake.touchdown.grains import make_grain
 PAIRS = 200
 
 
-def touching_distance(hulls: list[ConvexHull], turns: np.ndarray, along: np.ndarray, rock: Material) -> float:
-    """Distance of two centroids [m] at which the hulls begin to touch, by bisection."""
-    near, far = 0.0, 2.0 * max(hull.bounding_radius for hull in hulls)
+def touching_distances(
+    pairs: list[tuple[ConvexHull, ConvexHull]], turns: np.ndarray, along: np.ndarray, rock: Material
+) -> np.ndarray:
+    """Distances of two centroids [m] at which the hulls of each pair begin to touch, by bisection, [pairs].
+
+    turns: [pairs, 2, 4]; along: unit vectors from one to the other, [pairs, 3]. All pairs lie in one world.
+    """
+    hulls, first = [hull for pair in pairs for hull in pair], np.arange(len(pairs))[:, None] * [1.0, 0.0, 0.0]
+    near = np.zeros(len(pairs))
+    far = np.array([2.0 * max(hull.bounding_radius for hull in pair) for pair in pairs])
     # Their size over 2**15, a few millionths of a metre: a hundredth of the roundings and less.
     for _ in range(15):
         middle = 0.5 * (near + far)
-        touch = len(pressed(hulls, turns, middle * along, rock).contacts()) > 0
-        near, far = (middle, far) if touch else (near, middle)
+        world = World((0, 0, 0), 1e-9)
+        places = np.stack([first, first + middle[:, None] * along], axis=1).reshape(-1, 3)
+        world.add_bodies(hulls, rock, places, turns.reshape(-1, 4))
+        touch = np.isin(np.arange(len(pairs)), world.contacts()["body_a"] // 2)
+        near, far = np.where(touch, middle, near), np.where(touch, far, middle)
     return near
 
 
-def pressed(hulls: list[ConvexHull], turns: np.ndarray, apart: np.ndarray, rock: Material) -> World:
+def pressed(hulls: tuple[ConvexHull, ConvexHull], turns: np.ndarray, apart: np.ndarray, rock: Material) -> World:
     """Return a world of two hulls at rest."""
     world = World((0, 0, 0), 1e-9)
     for hull, turn, place in zip(hulls, turns, (np.zeros(3), apart), strict=True):
@@ -34,14 +44,19 @@ def test_hulls_pressed_into_each_other_part_with_their_energy():
     """Depths of 1.3 to 2 times both roundings, where the cores cross: no way of lying in each other is one of rest."""
     rock = Material(young_modulus=5e6, poisson_ratio=0.3, restitution=1.0, friction=0.0, density=2500.0)
     generator = np.random.default_rng(3)
-    ratios = []
+    pairs, turns, along, shares = [], [], [], []
     for _ in range(PAIRS):
-        hulls = [make_grain(generator, 14, 0.08) for _ in range(2)]
-        turns, along = generator.normal(size=(2, 4)), generator.normal(size=3)
-        turns /= np.linalg.norm(turns, axis=1)[:, None]
-        along /= np.linalg.norm(along)
-        depth = generator.uniform(1.3, 2.0) * sum(hull.rounding for hull in hulls)
-        world = pressed(hulls, turns, (touching_distance(hulls, turns, along, rock) - depth) * along, rock)
+        pairs.append(tuple(make_grain(generator, 14, 0.08) for _ in range(2)))
+        turns.append(generator.normal(size=(2, 4)))
+        along.append(generator.normal(size=3))
+        shares.append(generator.uniform(1.3, 2.0))
+    turns /= np.linalg.norm(turns, axis=2)[..., None]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    apart = touching_distances(pairs, turns, along, rock)
+    apart -= shares * np.array([sum(hull.rounding for hull in pair) for pair in pairs])
+    ratios = []
+    for pair, turn, place in zip(pairs, turns, apart[:, None] * along, strict=True):
+        world = pressed(pair, turn, place, rock)
         stored = world.energy()["elastic"]
         world.time_step = 0.02 * world.largest_step
         for _ in range(400):

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 EXPERIMENTS = Path(__file__).parents[2] / "validation" / "experiments"
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 
 
 @pytest.fixture(autouse=True)
 def experiments_on_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The scripts of the experiments import each other by name."""
-    monkeypatch.setattr(sys, "path", [str(EXPERIMENTS), *sys.path])
+    """The scripts of the experiments import each other by name, and those of the benchmarks."""
+    monkeypatch.setattr(sys, "path", [str(EXPERIMENTS), str(BENCHMARKS), *sys.path])
 
 
 def test_a_plate_is_slowed_more_by_denser_and_by_cohesive_grains(tmp_path: Path) -> None:
@@ -98,7 +99,7 @@ def test_a_fast_ball_throws_grains_and_none_leaves_faster_than_a_pair(
     """Ejecta begin with speed [Brisset-2018]; a bed gives back less than the restitution of its grains."""
     import who_rebounds
 
-    kind = replace(who_rebounds.KINDS["6 mm"], grain=0.007, width=0.06)
+    kind = replace(who_rebounds.KINDS["6 mm"], grain=0.007, width=0.05, depth=0.018)
     monkeypatch.setitem(who_rebounds.KINDS, "6 mm", kind)
     slow, fast = (who_rebounds.drop(tmp_path, "6 mm", froude, 0) for froude in (1.0, 30.0))
     assert slow["ejecta"] == 0

@@ -68,19 +68,27 @@ def test_same_input_same_bits():
     assert sum(b >= 0 for _, b in met) >= 3
 
 
-@pytest.mark.parametrize("count", [2, 3])
-def test_threads_change_no_bit(count):
-    """On one, two or three threads, changed on the way, with drag at first and lists renewed."""
-    worlds = heap(), heap()
-    for world in worlds:
-        world.drag = 1.0
-    worlds[1].thread_count = count
+def on_threads(count):
+    """A heap on so many threads, then on one and again on as many, with drag at first and lists renewed."""
+    world = heap()
+    world.drag = 1.0
+    world.thread_count = count
     for k in range(4):
-        for world in worlds:
-            world.run(steps=1000)
-            world.drag = 0.0
-        worlds[1].thread_count = count if k == 1 else 1
-    alone, shared = worlds
+        world.run(steps=600)
+        world.drag = 0.0
+        world.thread_count = count if k == 1 else 1
+    return world
+
+
+@pytest.fixture(scope="module")
+def alone():
+    return on_threads(1)
+
+
+@pytest.mark.parametrize("count", [2, 3])
+def test_threads_change_no_bit(count, alone):
+    """On one, two or three threads, changed on the way."""
+    shared = on_threads(count)
     assert len(alone.contacts()) >= 3
     assert alone.energy()["damping"] > 0.0
     assert alone.energy() == shared.energy()
@@ -89,15 +97,22 @@ def test_threads_change_no_bit(count):
     assert np.array_equal(alone.contacts(), shared.contacts())
 
 
+@pytest.fixture(scope="module")
+def plain():
+    """The heap in its own units; nobody goes on with it."""
+    world = heap()
+    world.run(steps=3000)
+    return world
+
+
 @pytest.mark.parametrize(
     ("length", "time", "stress"),
     [(1.0, 0.25, 16.0), (1.0, 4.0, 1 / 16), (4.0, 1.0, 16.0), (0.5, 1.0, 0.25), (1.0, 1.0, 8.0)],
 )
-def test_dynamic_similarity_to_the_last_bit(length, time, stress):
+def test_dynamic_similarity_to_the_last_bit(length, time, stress, plain):
     """Scaled by powers of two in length, time and stress (density follows), every number scales exactly."""
-    plain, scaled = heap(), heap(length, time, stress)
-    for world in (plain, scaled):
-        world.run(steps=3000)
+    scaled = heap(length, time, stress)
+    scaled.run(steps=3000)
     assert plain.energy()["friction"] > 0.0
     assert np.array_equal(plain.position * length, scaled.position)
     assert np.array_equal(plain.velocity * length / time, scaled.velocity)
@@ -204,11 +219,17 @@ def test_renewing_every_list_in_every_step_changes_no_bit():
     assert worlds[0].energy()["friction"] > 0.0
 
 
+@pytest.fixture(scope="module")
+def usual():
+    """The heap with the skin that it has; nobody goes on with it."""
+    world = heap()
+    world.run(0.4)
+    return world
+
+
 @pytest.mark.parametrize("skin", [0.02, 1.0, 8.0])
-def test_skin_of_the_neighbour_list_changes_no_bit(monkeypatch, skin):
+def test_skin_of_the_neighbour_list_changes_no_bit(monkeypatch, skin, usual):
     """From lists that are renewed in every few steps to one that holds all pairs of hulls, boxes and spheres."""
-    usual = heap()
-    usual.run(0.4)
     monkeypatch.setattr("lithobrake.dem.stepping.engine.SKIN", skin)
     other = heap()
     other.run(0.4)

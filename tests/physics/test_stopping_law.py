@@ -9,13 +9,14 @@ import pytest
 from scipy.integrate import solve_ivp
 
 EXPERIMENTS = Path(__file__).parents[2] / "validation" / "experiments"
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 GRAVITY = 9.81
 
 
 @pytest.fixture(autouse=True)
 def experiments_on_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The scripts of the experiments import each other by name."""
-    monkeypatch.setattr(sys, "path", [str(EXPERIMENTS), *sys.path])
+    """The scripts of the experiments import each other by name, and those of the benchmarks."""
+    monkeypatch.setattr(sys, "path", [str(EXPERIMENTS), str(BENCHMARKS), *sys.path])
 
 
 def path_of(fall: float, length: float, friction: float) -> np.ndarray:
@@ -185,7 +186,7 @@ def test_a_bed_laid_out_from_tiles_repeats_and_lies_as_high_as_its_tile() -> Non
     from ball_into_beads import bed_of
     from sphere_bed import places_of, poured
 
-    bed = bed_of(0.005, width=0.06, depth=0.02, fall_speed=3.0)
+    bed = bed_of(0.005, width=0.06, depth=0.01, fall_speed=3.0)
     tile, whole = poured(replace(bed, width=0.03, tiles=1)), poured(bed)
     assert len(whole.bodies) == 4 * len(tile.bodies) == bed.count
     assert whole.period == (0.06, 0.06)

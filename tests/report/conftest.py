@@ -9,16 +9,16 @@ from lithobrake.report import write_report
 from lithobrake.results import open_study
 from lithobrake.results.page_data import PageData, page_results
 
-from ..quick_studies import quick_studies
+from ..quick_studies import blank_pictures, quick_studies
 from ..shared_folders import shared_folder
 from .finished_studies import asked_study, first_study, paper_study
 
 
 def finished(factory: pytest.TempPathFactory, study: Callable[[Path], None]) -> Path:
-    """The folder of a study with its page."""
+    """The folder of a study with its page, whose PNG files are blank."""
 
     def make(folder: Path) -> None:
-        with quick_studies():
+        with quick_studies(), blank_pictures("png"):
             study(folder)
             write_report(folder)
 

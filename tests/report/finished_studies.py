@@ -68,7 +68,9 @@ class Steady:
 
 def first_study(folder: Path) -> None:
     """First touchdowns on ground that holds what lies there: landers leave, are captured, and are lost over the rim."""
-    _finish(folder, synthetic_tables(**FIRST), SyntheticLander(Truth(rim="fast_flat", capture=0.2), follows_speed=True))
+    lander = SyntheticLander(Truth(rim="fast_flat", capture=0.2), follows_speed=True)
+    with few_terms():
+        _finish(folder, synthetic_tables(**FIRST), lander)
 
 
 def paper_study(folder: Path) -> None:

@@ -1,6 +1,7 @@
 """The page in a real browser, from disk: what a reader moves moves, and nothing leaves the machine."""
 
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,9 +27,19 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
         yield opened
 
 
-@pytest.fixture(scope="module", params=["paper_folder", "first_folder", "asked_folder"])
+@pytest.fixture(scope="module")
+def alone(first_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the page of first touchdowns in a folder of its own."""
+    copy = tmp_path_factory.mktemp("alone") / "index.html"
+    shutil.copy(first_folder / "report" / "index.html", copy)
+    return copy
+
+
+@pytest.fixture(scope="module", params=["paper_folder", "asked_folder", "first_folder"])
 def report(request: pytest.FixtureRequest) -> Path:
-    """The page of each study."""
+    """The page of each study; that of first touchdowns away from its folder: it needs nothing but itself."""
+    if request.param == "first_folder":
+        return Path(request.getfixturevalue("alone"))
     return Path(request.getfixturevalue(request.param)) / "report" / "index.html"
 
 
@@ -42,11 +53,12 @@ def shown(page: Page, report: Path) -> Page:
 
 
 @pytest.fixture(scope="module")
-def first(page: Page, first_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Page:
-    """The page of first touchdowns away from its folder, opened once: it needs nothing but itself."""
-    alone = tmp_path_factory.mktemp("alone") / "index.html"
-    shutil.copy(first_folder / "report" / "index.html", alone)
-    page.open(alone, LAPTOP)
+def first(page: Page, alone: Path) -> Page:
+    """The page of first touchdowns, which is open where it was the last of all."""
+    if page.value("location.href") == alone.as_uri():
+        page.screen(LAPTOP)
+    else:
+        page.open(alone, LAPTOP)
     assert page.value(STARTED) is True
     return page
 
@@ -144,6 +156,14 @@ def test_tables_are_sorted_by_a_click_and_come_back(shown: Page) -> None:
     assert sorted(came) == sorted(down)
     assert [float(cell.split()[0]) for cell in down] == numbers[::-1]
     assert back == came
+
+
+def test_explorers_run(shown: Page, report: Path, asked_folder: Path) -> None:
+    names = ["explorer", "touchdown-explorer"] if asked_folder in report.parents else ["explorer"]
+    assert sorted(shown.value("Object.keys(explorers)")) == names
+    for name in names:
+        assert re.match(r"[\d.]+ % ", shown.value(f"document.querySelector('#{name} .share').textContent"))
+    assert shown.complaints == []
 
 
 def test_short_tables_stand_before_long_ones_in_each_part(shown: Page) -> None:

@@ -12,7 +12,13 @@ from matplotlib.figure import Figure
 import lithobrake
 from lithobrake.report.figures.ground_map import GroundMap
 from lithobrake.report.figures.style import STYLE
+from lithobrake.results import StudyResults
 from lithobrake.statements.labels import end_words
+
+
+@pytest.fixture(scope="module")
+def study(asked_folder: Path) -> StudyResults:
+    return lithobrake.open_study(asked_folder)
 
 
 def test_what_becomes_of_the_landings_is_that_of_the_summary(first_folder: Path) -> None:
@@ -50,8 +56,7 @@ def test_a_figure_that_a_study_lacks_is_refused_with_those_it_has(paper_folder: 
         unfinished.map()
 
 
-def test_a_figure_of_several_panels_is_that_of_the_page(asked_folder: Path) -> None:
-    study = lithobrake.open_study(asked_folder)
+def test_a_figure_of_several_panels_is_that_of_the_page(study: StudyResults) -> None:
     rings, screening = study.plot.sobol().axes, study.results.expansion.screening
     parts = [(wedge.theta2 - wedge.theta1) / 360 for wedge in rings[0].patches]
     first = list(screening.sobol_first["speed_out"].values())
@@ -65,8 +70,8 @@ NAMES = (
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, asked_folder: Path) -> None:
-    study, axes = lithobrake.open_study(asked_folder), Figure().subplots()
+def test_a_figure_is_drawn_on_the_axes_that_are_given(name: str, study: StudyResults) -> None:
+    axes = Figure().subplots()
     assert getattr(study.plot, name)(ax=axes) is axes
     assert axes.has_data()
     # The half of a body has a title in place of axes.
@@ -80,8 +85,7 @@ def widths(axes: Axes) -> dict[str, float]:
     return {label.get_text(): bar.get_width() for label, bar in zip(axes.get_yticklabels(), axes.patches, strict=True)}
 
 
-def test_bars_of_ends_and_sides_are_their_shares(asked_folder: Path) -> None:
-    study = lithobrake.open_study(asked_folder)
+def test_bars_of_ends_and_sides_are_their_shares(study: StudyResults) -> None:
     for axes, shares in (
         (
             study.plot.ends(Figure().subplots()),
@@ -92,8 +96,7 @@ def test_bars_of_ends_and_sides_are_their_shares(asked_folder: Path) -> None:
         assert widths(axes) == pytest.approx({name: 100 * one.share.value for name, one in shares.items()})
 
 
-def test_every_lander_on_the_ground_is_on_the_map(asked_folder: Path) -> None:
-    study = lithobrake.open_study(asked_folder)
+def test_every_lander_on_the_ground_is_on_the_map(study: StudyResults) -> None:
     axes, site = study.plot.map(Figure().subplots()), study.results.site
     at_rest = study.journeys.where(study.journeys["end"] == "at_rest")
     drawn = np.concatenate([dots.get_offsets() for dots in axes.collections])
@@ -102,8 +105,7 @@ def test_every_lander_on_the_ground_is_on_the_map(asked_folder: Path) -> None:
         assert np.min(np.hypot(drawn[:, 0] - east, drawn[:, 1] - north)) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(asked_folder: Path) -> None:
-    study = lithobrake.open_study(asked_folder)
+def test_the_median_is_marked_where_half_of_the_landers_are_at_rest(study: StudyResults) -> None:
     axes, rest = study.plot.distances(Figure().subplots()), study.results.rest.distance_m
     marks = [line.get_xydata()[0].tolist() for line in axes.lines if line.get_marker() == "o"]
     assert marks == [pytest.approx([rest.median.value, 50.0]), pytest.approx([rest.q95.value, 95.0])]

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 from lithobrake.pipeline.answer.run_answers import scope
-from lithobrake.report import write_report
+from lithobrake.report import reports, write_report
 from lithobrake.report.content import PageTable
 from lithobrake.report.figures.hulls import scene
+from lithobrake.report.figures.style import figure_style
 from lithobrake.report.pages.html import size
 from lithobrake.report.pages.study_page import study_content
 from lithobrake.results import MovingBodies
@@ -27,7 +28,7 @@ from lithobrake.statements.labels import area
 from lithobrake.study import read_study
 from lithobrake.vocabulary.number_words import number, thousands
 
-from ..quick_studies import quick_studies
+from ..quick_studies import blank_pictures, quick_studies
 
 
 def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
@@ -35,7 +36,7 @@ def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
 ) -> None:
     folder = Path(shutil.copytree(paper_folder, tmp_path / "again"))
     told: list[tuple[int, int]] = []
-    with quick_studies():
+    with quick_studies(), blank_pictures("png"):
         path = write_report(folder, lambda done, total: told.append((done, total)))
     assert path == folder / "report" / "index.html"
     assert told == [(number, 10) for number in range(10)]
@@ -46,6 +47,15 @@ def test_progress_counts_the_figures_and_the_same_files_give_the_same_page(
     for svg in drawn:
         assert svg.read_bytes().lstrip().startswith(b"<?xml")
         assert (folder / "report" / svg.name).read_bytes() == svg.read_bytes()
+
+
+@pytest.mark.parametrize(("kind", "begin"), [("png", b"\x89PNG"), ("svg", b"<?xml")])
+def test_a_figure_is_the_same_picture_every_time(paper: PageData, kind: str, begin: bytes) -> None:
+    plot = study_content(paper).plots[-1]
+    with figure_style():
+        first, again = (reports._saved(plot.draw(), kind) for _ in range(2))
+    assert first == again
+    assert first.startswith(begin)
 
 
 def test_page_has_the_ten_figures_inside_and_nothing_outside(paper_page: str, paper_folder: Path) -> None:

@@ -11,6 +11,7 @@ from lithobrake.chaos import LogUniform, Uniform
 from lithobrake.results import NamedEmulator
 from lithobrake.results.table import ExplorerAttitude
 
+from ..pipeline.few_terms import few_terms
 from ..quick_studies import quick_studies
 
 UNITS = {"grain.friction": "-", "grain.young_modulus": "Pa", "impact.speed": "m/s"}
@@ -45,7 +46,7 @@ def named() -> NamedEmulator:
     upper[:, 0], upper[:, 1] = allowed(x[:, 2]), 0.5 * np.pi
     upper[:, 2] = upper[:, 0] / np.sqrt(0.001)
     inputs = {"grain.friction": Uniform(0.2, 0.9), "grain.young_modulus": LogUniform(1e6, 1e8)}
-    with quick_studies():
+    with quick_studies(), few_terms():
         model = emulator.fit(
             inputs | {"impact.speed": Uniform(0.1, 0.3)}, x, y, groups=np.arange(count) // 8,
             outcome=np.where(np.isnan(y[:, 0]), "captured", "clear"), lower=[0.0, 0.0, 0.0, *[-np.inf] * 5],

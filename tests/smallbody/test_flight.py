@@ -80,7 +80,7 @@ def test_rotation_sign(ball):
 
 def test_against_another_integrator(top):
     """SciPy's DOP853 with the same gravity, the impact found by its own event on the signed height."""
-    position, velocity = cone(top, 20.0, 40.0, 4, seed=5)
+    position, velocity = cone(top, 20.0, 40.0, 3, seed=5)
     duration = 4 * 3600.0
     flights = fly(top, position, velocity, duration)
     assert (flights.status == "impact").sum() >= 2
@@ -338,11 +338,11 @@ def throws(body: Body, speed: float, count: int) -> tuple[np.ndarray, np.ndarray
 @pytest.mark.parametrize(("body", "speed"), [(didymos(), 0.3), (dimorphos(), 0.15)], ids=["didymos", "dimorphos"])
 def test_flights_in_a_binary_against_the_axes_of_the_stars(body, speed):
     """From either body, at any time, to any end; none of the formulas of the turning frame is used on the other side"""
-    position, velocity = throws(body, speed, 5)
-    begin = np.linspace(-3e4, 3e4, 5)
+    position, velocity = throws(body, speed, 3)
+    begin = np.linspace(-3e4, 3e4, 3)
     flights = fly(body, position, velocity, 15_000.0, start_time=begin)
     known = flights.status != "escaped"
-    assert known.sum() >= 4
+    assert known.sum() >= 2
     for i in np.flatnonzero(known):
         status, place = Stars(body).fly(position[i], velocity[i], float(begin[i]), 15_000.0)
         assert status == flights.status[i]
@@ -422,7 +422,7 @@ def test_the_partner_is_switched_off():
     alone, bare = didymos(partner=False), replace(didymos(), partner=None)
     assert alone.partner is None
     position, velocity = throws(alone, 0.3, 2)
-    ends = [fly(body, position, velocity, 2e4).position for body in (alone, bare, didymos())]
+    ends = [fly(body, position, velocity, 1e4).position for body in (alone, bare, didymos())]
     assert np.array_equal(ends[0], ends[1])
     assert np.abs(ends[0] - ends[2]).max() > 0.1
 

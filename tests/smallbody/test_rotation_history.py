@@ -364,10 +364,10 @@ def integrated(inertia: np.ndarray, attitude: np.ndarray, spin: np.ndarray, dura
 def test_it_turns_as_an_integrator_has_it(kind: str) -> None:
     random = np.random.default_rng(0)
     inertia = 1e-3 * skewed(KINDS[kind], random)
-    attitude, spin = starts(8, random)
-    duration = random.uniform(-20.0, 20.0, 8)
+    attitude, spin = starts(4, random)
+    duration = np.array([-18.0, -7.0, 9.0, 20.0])
     found = tumble(inertia, attitude, spin, duration)
-    for one in range(8):
+    for one in range(4):
         exact = integrated(inertia, attitude[one], spin[one], duration[one])
         # DOP853 at these tolerances loses some 1e-11 on the way.
         assert error(found[0][one : one + 1], exact[0][None]) < 1e-10

@@ -32,6 +32,7 @@ from lithobrake.results.named_emulator import allowed_motion
 from lithobrake.results.page_data import PageData
 from lithobrake.study import check_tables
 
+from ...pipeline.few_terms import few_terms
 from ...pipeline.synthetic_lander import synthetic_tables
 from ...quick_studies import quick_studies
 from ...synthetic_landings import ELEVATION_LIMIT, INPUTS, OUTPUT_NAMES, SPEED_LIMIT, STRONG
@@ -52,7 +53,7 @@ def model() -> Emulator:
     """An emulator of landings whose law is known."""
     x, y, outcome, bed = STRONG.study(200, 20, 5)
     upper = [SPEED_LIMIT, ELEVATION_LIMIT, np.inf, np.inf]
-    with quick_studies():
+    with quick_studies(), few_terms():
         return emulator.fit(
             dict(INPUTS), x, y, groups=bed, outcome=outcome, lower=[0.0, 0.0, -np.inf, 0.0], upper=upper,
             riders=["azimuth_out"], output_names=list(OUTPUT_NAMES),
@@ -74,8 +75,8 @@ def test_terms_of_every_kind_of_input_are_those_of_python() -> None:
         "e": TruncatedNormal(0.0, 1.0, -0.5, np.inf), "f": Beta(2.0, 3.0, 1.0, 4.0), "g": Gamma(2.0, 0.5),
         "h": Exponential(3.0), "i": Empirical(random.normal(size=60)),
     }  # fmt: skip
-    x = np.column_stack([law.ppf(random.random(400)) for law in inputs.values()])
-    y = x[:, :1] + np.log(x[:, 1:2]) * x[:, 2:3] + 0.1 * random.standard_normal((400, 1))
+    x = np.column_stack([law.ppf(random.random(150)) for law in inputs.values()])
+    y = x[:, :1] + np.log(x[:, 1:2]) * x[:, 2:3] + 0.1 * random.standard_normal((150, 1))
     model = emulator.fit(inputs, x, y, form="rows")
     found = answer_of(LAW, BEGIN + """
       law.used = Array.from({ length: law.terms }, (_, term) => term);

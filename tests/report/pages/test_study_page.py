@@ -24,8 +24,6 @@ from lithobrake.vocabulary.estimate import Estimate
 from lithobrake.vocabulary.number_words import LEVEL, with_interval
 from lithobrake.vocabulary.outcomes import END_COLOURS, JourneyEnd
 
-from ..browser import browser_page, needs_browser
-
 SECTIONS = ["Where", "When", "Why", "How sure", "Method", "First touchdown", "Appendix", "Files"]
 
 
@@ -191,14 +189,3 @@ def test_the_view_in_three_dimensions_has_the_flights_of_journeys(asked: PageDat
     # A lander with several flights is one way, of so many flights.
     flights = [int(count) for count in re.findall(r'"flights": (\d+)', view.html)]
     assert (sum(flights), len(flights)) == (len(ways), len(np.unique(asked.path_times[1])))
-
-
-@needs_browser
-def test_both_explorers_run(asked_folder: Path, tmp_path: Path) -> None:
-    with browser_page(tmp_path) as page:
-        page.open(asked_folder / "report" / "index.html", 1280)
-        assert sorted(page.value("Object.keys(explorers)")) == ["explorer", "touchdown-explorer"]
-        for name in ("explorer", "touchdown-explorer"):
-            share = page.value(f"document.querySelector('#{name} .share').textContent")
-            assert re.match(r"[\d.]+ % ", share)
-        assert page.complaints == []
