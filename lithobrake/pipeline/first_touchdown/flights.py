@@ -297,7 +297,8 @@ def write_shape(body: "Body", folder: StudyFolder) -> None:
 def flight_rows(start: Starts, flown: "Flights") -> Iterator[list[Any]]:
     """Rows of COLUMNS."""
     speed = np.linalg.norm(start.velocity, axis=1)
-    elevation = np.degrees(np.arcsin(start.velocity[:, 2] / speed))
+    # No arc sine, which has no value for a lander left at rest, and few digits near the vertical.
+    elevation = np.degrees(np.arctan2(start.velocity[:, 2], np.hypot(*start.velocity[:, :2].T)))
     before = np.column_stack([speed, elevation, start.velocity, *(start.site[key] for key in SITE_KEYS)]).tolist()
     after = np.column_stack([flown.latitude, flown.longitude, flown.impact_speed, np.degrees(flown.incidence)]).tolist()
     down = flown.facet >= 0
