@@ -53,8 +53,8 @@ def few_terms() -> Iterator[None]:
 
 @contextmanager
 def fewest_terms() -> Iterator[None]:
-    """Emulators of studies whose tests ask only that there is one choose among next to nothing; paths of flights have
-    few points.
+    """Emulators of studies whose tests ask only that there is one choose among next to nothing and follow each lander
+    twice; paths of flights have few points.
     """
     with few_terms(), pytest.MonkeyPatch.context() as patch:
         patch.setattr(mean_law, "MOST_TERMS", 8)
@@ -62,6 +62,7 @@ def fewest_terms() -> Iterator[None]:
         patch.setattr(form_choice, "MOST_FOLDS", 2)
         patch.setattr(fitting, "FOLDS", 2)
         patch.setattr(law, "INVERSE_PENALTIES", (1e-2,))
+        patch.setattr(emulated_journeys, "COPIES", 2)
         patch.setattr(flights, "PARTS", FEW_PARTS)
         for module in WITH_REFITS:
             patch.setattr(module, "REFIT_COUNT", REFITS // 2)
