@@ -244,7 +244,7 @@ def test_a_lander_keeps_its_spin_among_the_stars_until_it_rests() -> None:
     assert rest.end[0] == "at_rest"
 
 
-COUNT = 4000
+COUNT = 1500
 ELASTIC = HardSurface(1.0, 1.0, 0.0, 0.0)
 
 
