@@ -54,7 +54,10 @@ def study(
 
 
 def plain_shares(table: JourneyTable) -> dict[str, CountedShare]:
-    return {end: end_share(table.end == end, table.bed) for end in ENDS.tolist()}
+    """Shares of all ends, and the interval of that at rest: no other is asked for before it is narrowed."""
+    counts = {end: int((table.end == end).sum()) for end in ENDS.tolist()}
+    shares = {end: CountedShare(count, Estimate(count / JOURNEYS, None, None)) for end, count in counts.items()}
+    return shares | {REST: end_share(table.end == REST, table.bed)}
 
 
 @pytest.mark.parametrize(

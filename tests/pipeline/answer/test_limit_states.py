@@ -10,6 +10,7 @@ import pytest
 import lithobrake
 from lithobrake.analysis.unseen_event import even_limit
 from lithobrake.pipeline.answer.question_answers import limit_state_results
+from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
@@ -17,6 +18,7 @@ from lithobrake.results.study_files import json_values
 from lithobrake.study import check_tables
 
 from ...synthetic_landings import OUTPUT_NAMES, WEAK, random_soils
+from ..few_terms import FEW_PARTS, fewest_terms
 from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 # About a tenth and a two-hundredth of the landers that leave are faster [m/s].
@@ -29,10 +31,12 @@ CONDITIONS = {
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
-    """A study of 150 landings, to its page."""
+    """A study of 150 landings, to its page, on which paths of flights have few places."""
     changes = {"hard_ground": {"count": 0}, "flight": {"flight_count": 100}}
     tables = synthetic_tables(design={"run_count": 150}, limit_states=CONDITIONS, **changes)
-    return lithobrake.run(tables, tmp_path_factory.mktemp("limits") / "out", workers=1, model=SyntheticLander())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(flights, "PARTS", FEW_PARTS)
+        return lithobrake.run(tables, tmp_path_factory.mktemp("limits") / "out", workers=1, model=SyntheticLander())
 
 
 @pytest.fixture(scope="module")
@@ -98,7 +102,8 @@ def test_one_bed_has_no_interval_and_says_why(tmp_path: Path) -> None:
     few = {"design": {"run_count": 16}, "monte_carlo": {"sample_count": 200}, "flight": {"flight_count": 50}}
     changes = {"bed": {"bed_count": 1}, "hard_ground": {"count": 0}, "limit_states": {"fast": "speed_out > 0.1"}}
     tables = synthetic_tables(**few, **changes)
-    results = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
+    with fewest_terms():
+        results = lithobrake.run(tables, tmp_path / "out", workers=1, model=SyntheticLander(), report=False)
     state = results.summary["results"]["limit_states"]["fast"]
     assert (state["lower"], state["upper"], state["source"], state["inputs"]) == (None, None, "runs", {})
     assert "on one bed" in state["why"]

@@ -414,7 +414,8 @@ def test_beds_that_are_given_have_equally_many_runs(beds: int) -> None:
 
 def test_beds_that_grow_with_the_runs_are_all_used_and_full_at_each_twenty() -> None:
     study = drawn(240)
-    for run_count in range(2, 800):
+    # All at which beds begin to grow, some of those behind them, and those that fill the beds.
+    for run_count in (*range(2, 300), *range(307, 800, 31), *range(300, 800, LANDINGS_A_BED)):
         counts = Counter(beds_of_runs(study, run_count))
         assert set(counts) == set(range(default_bed_count(run_count, LANDINGS_A_BED)))
         # The newest bed fills next, and only where one has yet to be filled are the others ahead of it.

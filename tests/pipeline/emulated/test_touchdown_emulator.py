@@ -1,6 +1,5 @@
 """The emulator of all touchdowns of journeys, delivery options by it, and inference from bounces with it."""
 
-import dataclasses
 import json
 import math
 import shutil
@@ -11,6 +10,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 import lithobrake
@@ -37,7 +37,7 @@ from lithobrake.vocabulary.quantities import ORIENTATION
 
 from ...synthetic_landings import STRONG
 from ..ball_studies import drawn, write_ball
-from ..few_terms import REFITS
+from ..few_terms import REFITS, fewest_terms
 from ..journeys.bouncing_lander import TABLES, bounce, journey_tables
 from ..synthetic_lander import SOIL, SyntheticLander, synthetic_tables
 
@@ -174,7 +174,10 @@ def always_captured(inputs: dict[str, float], seed: int) -> dict[str, Any]:
 
 def test_too_few_that_left_give_no_emulator_and_a_reason(tmp_path: Path) -> None:
     changes = {"journey": {"count": 12}, "aim": AIM}
-    found = lithobrake.run(journey_tables(**changes), tmp_path / "out", workers=1, model=always_captured, report=False)
+    with fewest_terms():
+        found = lithobrake.run(
+            journey_tables(**changes), tmp_path / "out", workers=1, model=always_captured, report=False
+        )
     emulated, aim = found.results.emulated, found.results.aim
     assert "left the ground, and it needs 8" in emulated.why
     assert emulated.why in found.results.answer
@@ -229,15 +232,19 @@ def test_the_same_study_gives_the_same_landers(results: StudyResults, tmp_path: 
     shutil.copytree(results.folder, tmp_path / "again")
     for name in ("touchdown_emulator.json", "emulated.csv", "aim.csv"):
         (tmp_path / "again" / name).unlink()
-    again = lithobrake.run(journey_tables(aim=AIM), tmp_path / "again", workers=1, model=bounce, report=False)
-    for name in ("emulated.csv", "aim.csv"):
-        assert (again.folder / name).read_bytes() == (results.folder / name).read_bytes()
-    assert dataclasses.asdict(again.results)["emulated"] == dataclasses.asdict(results.results)["emulated"]
+    source = StudySource.of_tables(journey_tables(aim=AIM), function_identity(bounce))
+    run_study(source, tmp_path / "again", until="aim", worker_count=1, model=bounce)
+    for name in ("touchdown_emulator.json", "emulated.csv", "aim.csv"):
+        assert (tmp_path / "again" / name).read_bytes() == (results.folder / name).read_bytes(), name
 
 
 @pytest.fixture(autouse=True)
 def few_bounces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What bounces say is worked out for fewer of them, at fewer points; tests/analysis looks at the numbers."""
+    """What bounces say is worked out for fewer of them, at fewer points, by fewer refits; tests/analysis looks at the
+    numbers.
+    """
+    infer = import_module("lithobrake.analysis.bayesian_inference").infer
+    monkeypatch.setitem(infer.__kwdefaults__, "refit_count", 8)
     module = import_module("lithobrake.analysis.identifiability")
     for name, few in (("MOST_BOUNCES", 8), ("PRIOR_POINTS", 512), ("REPLICATES", 50)):
         monkeypatch.setattr(module, name, few)
@@ -248,9 +255,10 @@ SEEN = "speed_out [m/s],elevation_out [rad],error:speed_out [m/s],outcome\n0.12,
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A study of 96 landings whose soil counts."""
+    """A study of 96 landings whose soil counts, and whose flights, at which nobody looks, are short."""
     out, model = tmp_path_factory.mktemp("infer") / "out", SyntheticLander(STRONG)
-    source = StudySource.of_tables(synthetic_tables(design={"run_count": 96}), function_identity(model))
+    changes = {"design": {"run_count": 96}, "flight": {"duration": 600.0}}
+    source = StudySource.of_tables(synthetic_tables(**changes), function_identity(model))
     run_study(source, out, until="emulator", worker_count=1, model=model)
     return out
 
@@ -310,9 +318,17 @@ def test_a_file_that_tells_no_bounce_is_refused(text: str, words: str, tmp_path:
         read_bounces(bounces(tmp_path, text))
 
 
-def test_the_posterior_and_its_picture_are_written(folder: Path, tmp_path: Path) -> None:
+def test_the_posterior_and_its_picture_are_written(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # tests/report looks at what is drawn.
+    drawn = list[Any]()
+    monkeypatch.setattr(
+        "lithobrake.report.figures.model_figures.corner_figure", lambda inputs: drawn.append(inputs) or Figure((1, 1))
+    )
     found = infer_study(folder, bounces(tmp_path, SEEN))
     content = json.loads((folder / "posterior.json").read_text(encoding="utf-8"))
+    assert drawn == [content["inputs"]]
     assert content == json.loads(json.dumps(found))
     assert set(content["inputs"]) == set(SOIL)
     friction = content["inputs"]["grain.friction"]
@@ -386,7 +402,7 @@ def test_a_folder_without_an_emulator_is_refused(tmp_path: Path) -> None:
 def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study of a program, with an emulator of its runs in the folder beside it."""
     changes = {
-        **drawn(24),
+        **drawn(16),
         'friction = { distribution = "uniform", lower = 0.05, upper = 0.4 }': "friction = 0.2",
     }
     path = write_ball(tmp_path_factory.mktemp("plan") / "study.toml", changes)

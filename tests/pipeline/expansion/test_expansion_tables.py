@@ -3,6 +3,7 @@
 import json
 import math
 import sys
+from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from lithobrake.pipeline import StudyFolder, stage_keys
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.expansion.expansions import points
+from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.runs.landings import drawn_rows
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -26,10 +28,10 @@ from lithobrake.results import StudyResults, open_study
 from lithobrake.study import Study, check_tables
 from lithobrake.vocabulary.quantities import OUTPUTS, PLACE
 
-from ...command_line import lithobrake as command
 from ...paper_tables import paper_tables
 from ...report.browser import browser_page, needs_browser
 from ...report.page_scripts import answer_of, explorer_data, needs_node
+from ..few_terms import FEW_PARTS
 from ..synthetic_lander import synthetic_tables
 
 # Two of the outputs scatter together, by a tenth of a millimetre a second along x and twice that upward.
@@ -51,7 +53,7 @@ bed = { grain_count = 100, width = [0.6, 0.6], diameter = { distribution = "cons
 grain = { density = 2500.0, young_modulus = 1e7, poisson_ratio = 0.25, restitution = 0.5, friction = 0.5 }
 monte_carlo = { sample_count = 4_000, scatter = true }
 flight = { flight_count = 10, duration = 3600.0 }
-hard_ground = { count = 40 }
+hard_ground = { count = 10 }
 [lander]
 shape = "sphere"
 diameter = 0.1
@@ -133,14 +135,20 @@ def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> N
     assert [name for name in names if before[name] == after[name]] == ["bed", "landing"]
 
 
+@pytest.fixture(scope="module", autouse=True)
+def few_places() -> Iterator[None]:
+    """Paths of flights have few places."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(flights, "PARTS", FEW_PARTS)
+        yield
+
+
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("scatter")
     (folder / "program.py").write_text(PROGRAM)
     (folder / "study.toml").write_text(STUDY.replace("PYTHON", f"{sys.executable} -S"))
-    ended = command("run", folder / "study.toml", "--out", folder / "out", "--workers", 1)
-    assert ended.returncode == 0, ended.stderr
-    return folder / "out"
+    return lithobrake.run(folder / "study.toml", folder / "out", workers=1).folder
 
 
 def test_points_run_twice_tell_the_scatter(out: Path) -> None:

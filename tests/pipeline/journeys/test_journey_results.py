@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -27,15 +28,15 @@ from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.report import write_report
 from lithobrake.report.figures.ground_map import round_length
-from lithobrake.results import ExplorerTables, StudyResults
+from lithobrake.results import ExplorerTables, StudyResults, open_study
 from lithobrake.study import StudySource, check_tables, read_study
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
 from ...command_line import lithobrake
-from ...report.browser import browser_page, needs_browser
+from ...report.browser import Page, browser_page, needs_browser
 from ...report.page_scripts import answer_of, explorer_data, needs_node
 from ...report.page_text import visible_text
-from .bouncing_lander import FAILS, LEAVES, STUCK, bounce, journey_tables, run_without_emulator
+from .bouncing_lander import FAILS, LEAVES, STUCK, bounce, journey_tables
 
 
 def test_each_journey_has_a_row_with_its_end(journeys: StudyResults) -> None:
@@ -210,7 +211,9 @@ def test_status_counts_no_touchdown_of_an_earlier_delivery(journeys: StudyResult
     folder = tmp_path / "edited"
     shutil.copytree(journeys.folder, folder)
     edited = journey_tables(delivery={"incidence_deg": 25.0}, journey={"count": 12})
-    made = run_without_emulator(edited, folder).touchdowns.row_count
+    source = StudySource.of_tables(edited, function_identity(bounce))
+    run_study(source, folder, until="runs", worker_count=1, model=bounce)
+    made = open_study(folder).touchdowns.row_count
     for name in TABLES:
         (folder / name).unlink()
     found = study_status(folder).runs
@@ -249,12 +252,17 @@ def test_a_bar_of_lengths_is_a_round_one(most: float, length: float) -> None:
     assert round_length(most) == pytest.approx(length, rel=1e-12)
 
 
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Page]:
+    with browser_page(tmp_path_factory.mktemp("browser")) as opened:
+        yield opened
+
+
 @needs_browser
-def test_the_page_takes_three_sheets_of_paper_at_most(page: Path, tmp_path: Path) -> None:
-    with browser_page(tmp_path) as browser:
-        browser.open(page, 1280)
-        assert 2 <= browser.sheets() <= 3
-        assert browser.complaints == []
+def test_the_page_takes_three_sheets_of_paper_at_most(page: Path, browser: Page) -> None:
+    browser.open(page, 1280)
+    assert 2 <= browser.sheets() <= 3
+    assert browser.complaints == []
 
 
 SCRIPTS = ("live/law.js", "live/attitude.js", "live/flown.js", "live/explore.js")
@@ -357,22 +365,21 @@ def test_the_page_says_of_how_many_it_is_one(page: Path, explored: dict[str, Any
 
 
 @needs_browser
-def test_slower_impacts_come_to_rest_more_often(page: Path, model: TouchdownEmulator, tmp_path: Path) -> None:
+def test_slower_impacts_come_to_rest_more_often(page: Path, model: TouchdownEmulator, browser: Page) -> None:
     number = 2 * model.inputs.index(OF_TOUCHDOWN[0]) + 1
-    with browser_page(tmp_path) as browser:
-        browser.open(page, PHONE)
-        assert browser.value("document.documentElement.scrollWidth") == PHONE
-        assert browser.value("document.querySelectorAll('#touchdown-explorer figure').length") == 3
-        before = browser.value(SHARE)
-        browser.value(
-            f"(() => {{ const end = document.querySelectorAll('#touchdown-explorer input')[{number}]; end.value = 0.3;"
-            "end.dispatchEvent(new Event('input')); })()"
-        )
-        after = browser.value(
-            "new Promise((done) => { const look = () => "
-            f"{SHARE} !== {before!r} ? done({SHARE}) : setTimeout(look, 50); look(); }})"
-        )
-        assert browser.complaints == []
+    browser.open(page, PHONE)
+    assert browser.value("document.documentElement.scrollWidth") == PHONE
+    assert browser.value("document.querySelectorAll('#touchdown-explorer figure').length") == 3
+    before = browser.value(SHARE)
+    browser.value(
+        f"(() => {{ const end = document.querySelectorAll('#touchdown-explorer input')[{number}]; end.value = 0.3;"
+        "end.dispatchEvent(new Event('input')); })()"
+    )
+    after = browser.value(
+        "new Promise((done) => { const look = () => "
+        f"{SHARE} !== {before!r} ? done({SHARE}) : setTimeout(look, 50); look(); }})"
+    )
+    assert browser.complaints == []
     for said in (before, after):
         assert " % come to rest at this touchdown (90 % interval of the emulator: " in said
     assert float(after.split(" ")[0]) > float(before.split(" ")[0])

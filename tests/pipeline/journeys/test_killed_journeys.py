@@ -3,9 +3,13 @@
 The body of the study rolls, and its page is made.
 """
 
+import contextlib
 import random
 import shutil
+import subprocess
+import sys
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -23,17 +27,17 @@ from lithobrake.report import write_report
 from lithobrake.smallbody import fly
 from lithobrake.study import StudySource, read_study
 
-from ...campaign.dask_cluster import Cluster, cluster
 from ..killed_studies import kill, ledger, start
 from .soil_journeys import STUDY
 
 # What is killed when the ledger has so many touchdowns; there are 8 in all. That a study goes on alike after its
-# coordinator alone was killed, at any stage, tests/pipeline/test_killed.py shows.
+# coordinator alone was killed, at any stage, tests/pipeline/test_killed.py shows. The cluster has two workers.
 KILLED = {1: "worker", 4: "both"}
-WORKERS = 2
+WORKERS = 1
 ROLLING = STUDY.replace("\nsite = { ", "\nsite = { rotation = { yaw_deg = 30.0, roll_deg = 60.0 }, ").replace(
     "count = 6", "count = 2"
 )
+ROOT = Path(__file__).parents[3]
 TABLES = (*JOURNEY_FILES, "designs/drawn.csv", "designs/touchdowns.csv", "run_flights.csv")
 
 pytestmark = pytest.mark.skipif(not Path("/proc").is_dir(), reason="the processes are found in /proc (Linux)")
@@ -65,7 +69,7 @@ def ended(out: Path) -> dict[str, str | None]:
 def wait_for_touchdowns(process: BaseProcess, out: Path, count: int) -> None:
     while len(ended(out)) < count:
         assert process.exitcode is None, (out.parent / "said.txt").read_text()
-        time.sleep(0.005)
+        time.sleep(0.02)
 
 
 def assert_same(out: Path, calm: Path) -> None:
@@ -93,8 +97,8 @@ def test_journeys_that_are_killed_end_with_the_same_bits(calm: Path, begun: Path
 class Loses(Silent):
     """Shows nothing, and kills a worker of the cluster once the ledger has some touchdowns."""
 
-    def __init__(self, cluster: Cluster, out: Path) -> None:
-        self.worker, self.out = cluster.processes["first"], out
+    def __init__(self, worker: "subprocess.Popen[bytes]", out: Path) -> None:
+        self.worker, self.out = worker, out
 
     def progress(self, done: float, total: float, what: str, detail: str = "", /) -> None:
         if what == "journeys" and self.worker.poll() is None and len(ended(self.out)) >= min(KILLED):
@@ -102,14 +106,35 @@ class Loses(Silent):
             self.worker.wait()
 
 
+@contextlib.contextmanager
+def cluster_of_two(folder: Path) -> Iterator[tuple[str, "subprocess.Popen[bytes]"]]:
+    """The address of a scheduler in this process, and a worker that may be killed; another is a thread of this one."""
+    distributed = pytest.importorskip(
+        "distributed", reason="distributed is not installed (pip install lithobrake[dask])"
+    )
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, protocol="tcp://", host="127.0.0.1",
+            dashboard_address=None, local_directory=str(folder),
+        ) as made,
+        distributed.Client(made, set_as_default=False) as client,
+    ):  # fmt: skip
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", made.scheduler_address, "--nthreads", "1"]
+        command += ["--no-nanny", "--no-dashboard", "--local-directory", str(folder)]
+        worker = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            client.wait_for_workers(2, timeout=60)
+            yield made.scheduler_address, worker
+        finally:
+            worker.kill()
+            worker.wait()
+
+
 def test_journeys_on_a_cluster_that_loses_a_worker_end_with_the_same_bits(calm: Path, begun: Path) -> None:
-    pytest.importorskip("distributed", reason="distributed is not installed (pip install lithobrake[dask])")
-    with cluster(begun.parent) as made:
-        made.add_worker("first")
-        made.add_worker("second")
-        source, shown = StudySource.read(begun.parent / "soil.toml"), Loses(made, begun)
-        run_study(source, begun, until="fly_runs", scheduler=made.address, shown=shown)
-        assert shown.worker.poll() is not None
+    with cluster_of_two(begun.parent) as (address, worker):
+        source, shown = StudySource.read(begun.parent / "soil.toml"), Loses(worker, begun)
+        run_study(source, begun, until="fly_runs", scheduler=address, shown=shown)
+        assert worker.poll() is not None
     assert_same(begun, calm)
 
 

@@ -14,10 +14,12 @@ from lithobrake.export.flown import ExportOptions, Flown
 from lithobrake.export.maps import point_names, write_geojson
 from lithobrake.export.oem import Frame
 from lithobrake.geometry.attitude import arriving
+from lithobrake.pipeline.site import Site
 from lithobrake.results import StudyResults
 from lithobrake.smallbody import didymos, dimorphos, fly
 from lithobrake.smallbody.bounce import impact_frame
 from lithobrake.smallbody.grounds import Moments, grounds_of
+from lithobrake.study import read_study
 from lithobrake.vocabulary.number_words import with_interval
 from lithobrake.vocabulary.outcomes import JourneyEnd
 
@@ -82,7 +84,7 @@ def test_touchdowns_lie_on_the_body_that_they_name(found: StudyResults) -> None:
 
 def test_each_flight_leads_to_the_next_touchdown_on_either_body(found: StudyResults) -> None:
     """Flown again from arcs.csv it ends at the place, and on the body, of the next row of touchdowns.csv."""
-    body, arcs, table = dimorphos(), found.arcs, found.touchdowns
+    body, arcs, table = Site(read_study(found.folder / "study.toml")).body, found.arcs, found.touchdowns
     lasting = np.flatnonzero(arcs["end_s"] < 345600.0)
     start, speed = (
         np.column_stack([arcs[f"{of}_{axis}"][lasting] for axis in "xyz"]) for of in ("position", "velocity")

@@ -39,7 +39,7 @@ class Step(NamedTuple):
 def study(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     folder = tmp_path_factory.mktemp("soil")
     changed = (
-        STUDY.replace("seed = 4", "seed = 3")
+        STUDY.replace("seed = 4", "seed = 5")
         .replace("emulated_count = 40", "emulated_count = 0")
         .replace("count = 6,", "count = 4,")
     )

@@ -9,11 +9,11 @@ import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 from lithobrake.analysis import Estimate, Observation
@@ -21,28 +21,48 @@ from lithobrake.cli import app
 from lithobrake.files.reading import hashed_seed, read_rows
 from lithobrake.pipeline import InferredStudy, NowcastStudy, is_first_contact, nowcast_study
 from lithobrake.pipeline.answer.emulated_ends import Refits
+from lithobrake.pipeline.design.drawn_design import DrawnDesign
+from lithobrake.pipeline.journeys.touchdown_emulator import TouchdownEmulator
 from lithobrake.pipeline.nowcast import contact_nowcast
-from lithobrake.pipeline.nowcast.contact_emulator import TITLE, FirstContacts
+from lithobrake.pipeline.nowcast.contact_emulator import TITLE
 from lithobrake.pipeline.nowcast.contact_landers import ContactLanders, sides_down, with_scatter
+from lithobrake.pipeline.runs.solver import function_identity
+from lithobrake.pipeline.study_folder import FinishedFolder
+from lithobrake.pipeline.study_run import run_study
 from lithobrake.statements.nowcast import statement
+from lithobrake.study import StudySource
 from lithobrake.vocabulary.constants import REFIT_COUNT
 from lithobrake.vocabulary.quantities import UNKNOWN_END
 
 from ..few_terms import few_terms
-from ..journeys.bouncing_lander import bounce, journey_tables, run_without_emulator
+from ..journeys.bouncing_lander import bounce, journey_tables
+from .first_contacts import MOTION, MOTION_ERRORS, contacts
 
 KNOWN = "impact.speed,impact.incidence_deg"
 ROOT = Path(__file__).parents[3]
-MOTION = {"spin_out": 2.0, "elevation_out": 0.7, "speed_out": 0.3}
-MOTION_ERRORS = {"spin_out": 0.1, "elevation_out": 0.01, "speed_out": 0.02}
 
 
 @pytest.fixture(scope="module", autouse=True)
 def few_landers() -> Iterator[None]:
+    """Few landers are drawn and followed; the emulator of a folder is read, and fitted anew, once for all contacts."""
+    read, known = TouchdownEmulator.read, dict[Path, TouchdownEmulator]()
+
+    def once(design: DrawnDesign, folder: FinishedFolder) -> TouchdownEmulator:
+        if folder.path not in known:
+            known[folder.path] = read(design, folder)
+        return known[folder.path]
+
     with few_terms(), pytest.MonkeyPatch.context() as patch:
         for name, few in (("LANDERS", 250), ("COPIES", 40), ("FOLLOWED", 100)):
             patch.setattr(contact_nowcast, name, few)
+        patch.setattr(TouchdownEmulator, "read", once)
         yield
+
+
+@pytest.fixture
+def no_letters(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pictures are drawn, and not saved, which takes longer: that of the fast rebound is."""
+    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **how: Path(path).write_bytes(b""))
 
 
 @pytest.fixture(scope="module")
@@ -78,6 +98,7 @@ def test_a_fast_rebound_tells_a_high_friction(fast: dict, folder: Path) -> None:
     assert (folder / "nowcast.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.usefixtures("no_letters")
 def test_a_faster_rebound_rests_farther_and_later(fast: dict, folder: Path, tmp_path: Path) -> None:  # type: ignore[type-arg]
     slow = nowcast_study(folder, seen(tmp_path, f"speed_out,error:speed_out,{KNOWN}\n0.022,0.0005,0.06,5\n"))
     for name in ("time_s", "from_contact_m"):
@@ -87,6 +108,7 @@ def test_a_faster_rebound_rests_farther_and_later(fast: dict, folder: Path, tmp_
     assert 0.0 <= lower <= share <= upper <= 1.0
 
 
+@pytest.mark.usefixtures("no_letters")
 def test_a_captured_lander_rests_where_it_came_down(folder: Path, tmp_path: Path) -> None:
     content = nowcast_study(folder, seen(tmp_path, "outcome,contact_duration\ncaptured,0.3\n"))
     assert "Not used, as the emulator has no law of it for captured landers: contact_duration." in content["statement"]
@@ -155,9 +177,10 @@ def test_the_command_says_ground_and_place(folder: Path, tmp_path: Path, monkeyp
 
 def test_a_study_without_emulated_journeys_to_rest_is_refused(tmp_path: Path) -> None:
     tables = journey_tables(journey={"count": 12, "emulated_count": 0})
-    found = run_without_emulator(tables, tmp_path / "study", bounce)
+    source = StudySource.of_tables(tables, function_identity(bounce))
+    run_study(source, tmp_path / "study", until="runs", worker_count=1, model=bounce)
     with pytest.raises(ValueError, match=r"the study has journey\.emulated_count = 0; raise it"):
-        NowcastStudy.open(found.folder)
+        NowcastStudy.open(tmp_path / "study")
 
 
 def landers(ends: list[str], times: np.ndarray, refit: np.ndarray | None = None) -> ContactLanders:
@@ -200,18 +223,6 @@ def test_few_landers_widen_a_share() -> None:
     assert with_scatter(Estimate(0.5, None, None), 100.0).lower is None
 
 
-def contacts(beyond: list[str]) -> FirstContacts:
-    """Landers that all left with one motion, of an emulator that is asked for its seed and a range alone."""
-    count = len(beyond)
-    emulator = SimpleNamespace(
-        design=SimpleNamespace(study=SimpleNamespace(seed=3)), ranges={"impact.speed": (0.01, 0.1)}
-    )
-    outputs = {"speed_out": 0.1, "elevation_out": 0.5, "azimuth_out": 0.0, "spin_out": 1.0}
-    every = {name: np.full(count, value) for name, value in outputs.items()}
-    whole, axis, ended = np.arange(count), np.tile([0.0, 1.0, 0.0], (count, 1)), np.full(count, "clear")
-    return FirstContacts(emulator, None, whole, whole, ended, every, axis, {}, np.array(beyond))  # type: ignore[arg-type]
-
-
 def test_observed_motion_takes_its_errors_in_one_order() -> None:
     found = contacts([""] * 4).answers(np.arange(4), MOTION, MOTION_ERRORS)
     random = np.random.default_rng(hashed_seed(3, TITLE, "errors"))
@@ -225,7 +236,8 @@ def test_observed_motion_takes_its_errors_in_one_order() -> None:
 def test_the_order_is_that_of_every_process() -> None:
     """The order of a set of words changes with the seed of their hashes: by 2 these three stand the other way round."""
     code = (
-        f"from {__name__} import MOTION, MOTION_ERRORS, contacts, np\n"
+        f"from {contacts.__module__} import MOTION, MOTION_ERRORS, contacts\n"
+        "import numpy as np\n"
         "print(contacts([''] * 4).answers(np.arange(4), MOTION, MOTION_ERRORS).velocity.tolist())"
     )
     said = subprocess.run(

@@ -21,7 +21,7 @@ from lithobrake.study import StudyError
 from lithobrake.study.reader import check_tables
 
 from ...synthetic_landings import WEAK
-from ..few_terms import REFITS, WITH_REFITS
+from ..few_terms import REFITS, fewest_terms
 from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 ARRIVAL = {
@@ -49,9 +49,7 @@ def tables(**aim: Any) -> dict[str, Any]:
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     model = SyntheticLander(dataclasses.replace(WEAK, capture=0.2), follows_speed=True)
-    with pytest.MonkeyPatch.context() as patch:
-        for module in WITH_REFITS:
-            patch.setattr(module, "REFIT_COUNT", FEW_REFITS)
+    with fewest_terms():
         return lithobrake.run(tables(), tmp_path_factory.mktemp("aims") / "out", workers=1, model=model)
 
 
