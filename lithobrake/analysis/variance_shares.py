@@ -229,7 +229,12 @@ def _left_out(terms: Array, y: Array, beds: Labels, groups: np.ndarray, found: R
     """
     rows = []
     for number in range(beds.max() + 1):
-        left = regression(terms[beds != number], y[beds != number])
+        others = beds != number
+        # What varies on one bed alone, as a rare event, has no parts without it.
+        if np.ptp(y[others]) == 0.0:
+            rows.append(np.zeros(len(groups)))
+            continue
+        left = regression(terms[others], y[others])
         rows.append(groups @ left.squares / (left.squares.sum() + left.scatter))
     count = len(rows)
     half = confidence.t_quantile(count - 1) * np.sqrt((count - 1) * np.var(rows, axis=0))

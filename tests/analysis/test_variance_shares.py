@@ -155,6 +155,18 @@ def test_beds_whose_runs_are_alike_have_the_variance_of_runs_that_nearly_are() -
     assert exact.variance_at(0.9) == pytest.approx(near.variance_at(0.9), rel=1e-4)
 
 
+def test_an_event_on_one_bed_alone_has_parts_with_bounds() -> None:
+    """Without that bed nothing varies, so its parts are told with an interval that reaches far."""
+    random = np.random.default_rng(4)
+    x, bed = random.uniform(size=(48, 1)), np.repeat(np.arange(6), 8)
+    y = np.where((bed == 2) & (x[:, 0] > np.median(x[bed == 2])), 1.0, 0.0)
+    found = variance_shares({"friction": Uniform(0.0, 1.0)}, x, y, bed, soil=("friction",))
+    assert found is not None
+    for one in (found.soil, found.bed):
+        assert 0.0 <= one.lower <= one.value <= one.upper <= 1.0
+    assert found.soil.upper > found.soil.value
+
+
 def test_where_inputs_do_nothing_none_is_found() -> None:
     found = []
     for seed in range(60):
