@@ -44,7 +44,8 @@ def few_terms() -> Iterator[None]:
         patch.setattr(ridge_ladder, "FADES_FIRST", (-0.9,))
         patch.setattr(fitting, "FOLDS", 3)
         patch.setattr(fitting, "OUTCOME_FOLDS", 2)
-        patch.setattr(emulated_journeys, "COPIES", 6)
+        for module in (emulated_journeys, emulated_ends):
+            patch.setattr(module, "COPIES", 6)
         patch.setattr(law, "INVERSE_PENALTIES", (1e-4, 0.1))
         for module in WITH_REFITS:
             patch.setattr(module, "REFIT_COUNT", REFITS)
@@ -62,7 +63,8 @@ def fewest_terms() -> Iterator[None]:
         patch.setattr(form_choice, "MOST_FOLDS", 2)
         patch.setattr(fitting, "FOLDS", 2)
         patch.setattr(law, "INVERSE_PENALTIES", (1e-2,))
-        patch.setattr(emulated_journeys, "COPIES", 2)
+        for module in (emulated_journeys, emulated_ends):
+            patch.setattr(module, "COPIES", 2)
         patch.setattr(flights, "PARTS", FEW_PARTS)
         for module in WITH_REFITS:
             patch.setattr(module, "REFIT_COUNT", REFITS // 2)

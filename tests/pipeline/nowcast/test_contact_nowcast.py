@@ -80,8 +80,8 @@ def seen(folder: Path, text: str) -> Path:
 
 @pytest.fixture(scope="module")
 def fast(folder: Path) -> dict[str, object]:
-    """A rebound that the law gives with a friction of 0.73 at least: 0.8 x 0.0598 x friction x at most 1 is 0.035."""
-    return nowcast_study(folder, seen(folder, f"speed_out,error:speed_out,{KNOWN}\n0.035,0.0005,0.06,5\n"))
+    """A rebound that the law gives with a friction of 0.84 at least: 0.8 x 0.0598 x friction x at most 1 is 0.040."""
+    return nowcast_study(folder, seen(folder, f"speed_out,error:speed_out,{KNOWN}\n0.040,0.0005,0.06,5\n"))
 
 
 def test_a_fast_rebound_tells_a_high_friction(fast: dict, folder: Path) -> None:  # type: ignore[type-arg]
@@ -100,7 +100,13 @@ def test_a_fast_rebound_tells_a_high_friction(fast: dict, folder: Path) -> None:
 
 @pytest.mark.usefixtures("no_letters")
 def test_a_faster_rebound_rests_farther_and_later(fast: dict, folder: Path, tmp_path: Path) -> None:  # type: ignore[type-arg]
-    slow = nowcast_study(folder, seen(tmp_path, f"speed_out,error:speed_out,{KNOWN}\n0.022,0.0005,0.06,5\n"))
+    moves: list[tuple[float, str]] = []
+    contact = seen(tmp_path, f"speed_out,error:speed_out,{KNOWN}\n0.022,0.0005,0.06,5\n")
+    slow = nowcast_study(folder, contact, lambda *move: moves.append(move))
+    assert [done for done, _ in moves] == sorted({done for done, _ in moves})
+    assert [what for _, what in moves if "landers" in what] == [
+        f"following landers from {when} the contact" for when in ("before", "after")
+    ]
     for name in ("time_s", "from_contact_m"):
         assert slow["rest"][name]["after"][2] < fast["rest"][name]["after"][2]
         assert slow["rest"][name]["after"][1] < fast["rest"][name]["after"][1]
@@ -120,8 +126,12 @@ def test_a_captured_lander_rests_where_it_came_down(folder: Path, tmp_path: Path
 
 
 def test_a_contact_outside_of_the_study_has_no_interval(folder: Path, tmp_path: Path) -> None:
-    content = nowcast_study(folder, seen(tmp_path, "speed_out,spin_out\n0.9,40\n"))
+    moves: list[str] = []
+    content = nowcast_study(
+        folder, seen(tmp_path, "speed_out,spin_out\n0.9,40\n"), lambda done, what: moves.append(what)
+    )
     assert not content["is_reliable"]
+    assert not [what for what in moves if "landers" in what]
     assert (content["rest"], content["inputs"], content["ground"]) == (None, {}, {})
     assert len(content["statement"]) == 1
     assert "lies outside what the study simulated, so nothing is said" in content["statement"][0]
