@@ -110,7 +110,9 @@ def test_a_solver_of_ones_own_is_run_once_and_replaced(tmp_path: Path) -> None:
 
 def test_a_study_without_a_file_is_run_shown_and_kept(tmp_path: Path) -> None:
     with commands_here():
-        said = printed("study_in_python", tmp_path, smaller={'"count": 8': '"count": 2', '"grain_count": 30': '"grain_count": 20'})
+        said = printed(
+            "study_in_python", tmp_path, smaller={'"count": 8': '"count": 2', '"grain_count": 30': '"grain_count": 20'}
+        )
     assert "study.toml: lander.mas is not a known key; did you mean mass?" in said
     assert re.search(r"^\d+ % \(90 % interval .*\(2 journeys, \d+ simulated landings, 2 beds\)", said, re.MULTILINE)
     assert "['contacts', 'distances', 'ends', 'map', " in said
