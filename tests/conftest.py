@@ -3,8 +3,10 @@
 import gc
 import os
 import sys
+from functools import cache
 
 import pytest
+import typer.testing
 
 # The suite runs in two processes; linear algebra with threads of its own in each would have them wait for one another,
 # which costs many times what it gains on arrays of this size. Set before NumPy is imported for the first time.
@@ -16,6 +18,9 @@ os.environ["LITHOBRAKE_BED_LIBRARY_GB"] = "0"
 # A program of an example begins with python3: this interpreter, and none that a manager of versions chooses at each
 # start, which takes eight times as long as the program.
 os.environ["PATH"] = os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", os.defpath)])
+
+# Commands and their options are put together once in a process, as for a user, and not at each call of a test.
+typer.testing._get_command = cache(typer.testing._get_command)
 
 # Files that come first. One compiles all kernels of the engine, which the others then find, and another one that calls
 # none of them runs meanwhile. Then those that take long, the longest first: at the end one process would work on them

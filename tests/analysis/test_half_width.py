@@ -10,6 +10,7 @@ import pytest
 from lithobrake.analysis import (
     best_runs_a_bed,
     cost_over_best,
+    half_width,
     half_width_of,
     half_width_range,
     next_run_count,
@@ -93,8 +94,9 @@ def test_the_best_number_of_runs_a_bed_costs_least() -> None:
         best_runs_a_bed(0.0)
 
 
-def test_a_third_of_the_runs_says_what_all_of_them_give() -> None:
+def test_a_third_of_the_runs_says_what_all_of_them_give(monkeypatch: pytest.MonkeyPatch) -> None:
     """6 studies of 60 runs on 15 beds that are correlated by 0.05: nine in ten, less two standard deviations."""
+    monkeypatch.setattr(half_width, "STUDIES", 100)
     random, held = np.random.default_rng(0), 0
     for _ in range(6):
         bed = np.concatenate([random.permutation(15) for _ in range(4)])

@@ -143,7 +143,7 @@ def test_a_bounce_that_the_model_does_not_give_is_told(model: Emulator, monkeypa
     monkeypatch.setitem(predictive_p_value.__globals__, "REPLICATES", 100)
     monkeypatch.setitem(predictive_p_value.__globals__, "POSTERIOR_POINTS", 50)
     # Walkers that the odd one needs go a shorter way.
-    monkeypatch.setitem(infer.__globals__, "LENGTH", 15.0)
+    monkeypatch.setitem(infer.__globals__, "LENGTH", 8.0)
     usual, odd = Observation({"speed": 0.8}), Observation({"speed": 9.0}, {"speed": 0.1})
     posteriors = [infer(model, [one], refit_count=0, point_count=1024) for one in (usual, odd)]
     assert predictive_p_value(model, posteriors[0], usual) > 0.2
@@ -179,9 +179,9 @@ def test_bounds_that_follow_the_inputs_are_asked_for_at_the_points() -> None:
     bounded = emulator.fit(INPUTS, x, y, lower=0.0, upper=upper, output_names=["speed"], form="rows")
     seen = [Observation({"speed": 0.9})]
     with pytest.raises(ValueError, match="upper is missing, but it differed between the runs"):
-        infer(bounded, seen, refit_count=0, point_count=512)
+        infer(bounded, seen, refit_count=0, point_count=4096)
     found = infer(
-        bounded, seen, refit_count=0, point_count=512,
+        bounded, seen, refit_count=0, point_count=4096,
         bounds=lambda points: (None, 1.0 + 0.1 * np.exp(0.1 * points[:, 1:])),
     )  # fmt: skip
     # A speed so near the bound is that of a slippery soil.

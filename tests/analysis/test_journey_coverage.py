@@ -1,4 +1,4 @@
-"""Fifty synthetic studies of journeys: the intervals hold the truth as often as they say, as far as fifty can tell.
+"""Thirty synthetic studies of journeys: the intervals hold the truth as often as they say, as far as thirty can tell.
 
 Two hundred studies a setting, and more settings: `validation/journey_coverage.py`, from which the studies come.
 """
@@ -12,18 +12,20 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2] / "validation"))
 from journey_coverage import AT_REST, CONTACTS, ENDS, Truth, exact, kept_rows, page_table, setting
 
-STUDIES = 50
+STUDIES = 30
+# Of so many nominal 90 % intervals: three standard deviations of the share that holds.
+LEAST = 0.9 - 3.0 * np.sqrt(0.09 / STUDIES)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.2])
 def test_intervals_of_journeys_hold_the_truth(rho: float) -> None:
     rows = list(setting(Truth(rho=rho), 96, 12, STUDIES))
-    # Three standard deviations below the level; a count or a rare event cannot but be held more often.
-    assert {row["quantity"]: row["held"] for row in rows if row["held"] < 0.77} == {}
+    # A count or a rare event cannot but be held more often.
+    assert {row["quantity"]: row["held"] for row in rows if row["held"] < LEAST} == {}
     assert all(row["held"] < 1.0 for row in rows if "time_s" in row["quantity"])
     for row in rows:
         if row["quantity"] in ENDS:
-            # The mean of 50 studies scatters by a seventh of an error, a twelfth of the interval.
+            # The mean of 30 studies scatters by a fifth of an error, a ninth of the half width.
             assert abs(row["bias"]) < 0.25 * row["half_width"]
 
 

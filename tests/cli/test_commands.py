@@ -376,10 +376,8 @@ def test_an_output_that_takes_nothing_is_one_sentence(folder: Path, words: tuple
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems keep a current folder, or remove none")
 def test_without_a_current_folder_the_sentence_says_so(folder: Path) -> None:
     (folder / "gone").mkdir()
-    script = 'import os, sys; os.rmdir(os.getcwd()); from lithobrake.cli import app; app(["plan", sys.argv[1]])'
-    study = folder / "study.toml"
-    study.write_text((Path(__file__).parents[2] / "examples" / "ball_on_plate.toml").read_text())
-    words = [sys.executable, "-c", script, str(study)]
+    script = 'import os; os.rmdir(os.getcwd()); from lithobrake.cli import app; app(["examples", "ball_on_plate"])'
+    words = [sys.executable, "-c", script]
     ended = subprocess.run(words, cwd=folder / "gone", capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stdout) == (2, "")
     assert "current folder" in ended.stderr

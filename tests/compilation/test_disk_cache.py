@@ -235,10 +235,11 @@ except ValueError as error:
 """
 
 
-@pytest.fixture
-def package(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of what compiles, with kernels in the place of those of smallbody."""
-    room = tmp_path / "lithobrake"
+    folder = tmp_path_factory.mktemp("package")
+    room = folder / "lithobrake"
     source = Path(lighter_compilation.__file__).parents[1]
     for name in ("compilation", "files", "__init__.py", "__init__.pyi", "vocabulary"):
         target = room / name
@@ -247,7 +248,7 @@ def package(tmp_path: Path) -> Path:
     (room / "smallbody").mkdir()
     (room / "smallbody" / "__init__.py").write_text("")
     (room / "smallbody" / "test_kernels_of_springs.py").write_text(KERNELS)
-    return tmp_path
+    return folder
 
 
 def call(package: Path, *versions: str) -> tuple[list[str], str]:
@@ -258,8 +259,13 @@ def call(package: Path, *versions: str) -> tuple[list[str], str]:
     return ended.stdout.splitlines(), ended.stderr
 
 
-def test_another_process_finds_what_was_compiled_and_inner_kernels_raise(package):
-    first, _ = call(package)
+@pytest.fixture(scope="module")
+def first(package: Path) -> list[str]:
+    """What the first process prints, which compiles."""
+    return call(package)[0]
+
+
+def test_another_process_finds_what_was_compiled_and_inner_kernels_raise(package, first):
     again, told = call(package)
     assert int(first[1]) > 0
     assert again == [first[0], "0", "a spring is shorter than nothing"]
@@ -268,12 +274,12 @@ def test_another_process_finds_what_was_compiled_and_inner_kernels_raise(package
 
 
 @LIGHTER
-def test_another_version_of_numba_compiles_in_its_own_way_with_the_same_bits(package):
-    lighter, _ = call(package)
+def test_another_version_of_numba_compiles_in_its_own_way_with_the_same_bits(package, first):
+    assert not any("kernel-" in path.name for path in package.rglob("cache/**/*"))
     plain, told = call(package, "0.1000.0")
     assert "Numba 0.1000 with llvmlite 0.50 compiles in its own way, which takes twice as long" in told
     assert "install Numba 0.68 with llvmlite 0.50." in told
-    assert (plain[0], plain[2]) == (lighter[0], lighter[2])
+    assert (plain[0], plain[2]) == (first[0], first[2])
     # Each kernel is then kept for kernels that call it, too.
     assert any("kernel-" in path.name for path in package.rglob("cache/**/*"))
     assert call(package, "0.1000.0")[0] == [plain[0], "0", plain[2]]
@@ -300,7 +306,7 @@ def test_a_function_that_numba_compiles_in_its_own_way_can_call_a_kernel_with_ke
 
 
 @LIGHTER
-def test_kernels_are_counted_as_they_are_compiled(package):
+def test_kernels_are_counted_as_they_are_compiled(package, tmp_path):
     """Two kernels stand below one, among three; what is compiled while nobody watches is not told."""
     counted = """
 from lithobrake.compilation.compiled import watched
@@ -311,7 +317,7 @@ total(heap(0.3), 0)
 with watched("another", lambda done, count: print("never")):
     total(heap(0.3)._replace(weight=total.py_func.__globals__["np"].zeros(5, dtype="f4")), 0)
 """
-    environment = {**os.environ, "LITHOBRAKE_CACHE": str(package / "cache"), "PYTHONPATH": str(package)}
+    environment = {**os.environ, "LITHOBRAKE_CACHE": str(tmp_path / "cache"), "PYTHONPATH": str(package)}
     ended = subprocess.run(
         [sys.executable, "-c", counted], env=environment, cwd=package, capture_output=True, text=True, check=True
     )

@@ -12,7 +12,7 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import nullcontext, redirect_stdout
+from contextlib import contextmanager, nullcontext, redirect_stdout
 from importlib import import_module
 from io import StringIO
 from itertools import pairwise
@@ -26,9 +26,11 @@ from blocks import PAGES, ROOT, Block, all_blocks, blocks
 from sources import wrong
 from typer.testing import CliRunner
 
+from lithobrake.analysis import half_width
 from lithobrake.cli import app
 from lithobrake.study import known_keys
 
+from ..pipeline.few_terms import few_terms
 from ..quick_studies import one_process
 
 DOCS = ROOT / "docs"
@@ -212,6 +214,7 @@ LANGUAGES = {"python", "sh", "toml", "json", "text", "math"}
 # Blocks that say why they are not run: two that take minutes, the rest other people's programs, kernels, a cluster.
 LEFT_OUT = 14
 PAGES_WITH_PYTHON = [page for page in PAGES if any(block.language == "python" for block in blocks(page))]
+STUDIES = half_width.STUDIES
 COMMANDS = typer.main.get_command(app)
 
 
@@ -228,13 +231,20 @@ def workplace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@contextmanager
+def studies_here() -> Iterator[None]:
+    """Studies have this process for a worker, and emulators that choose among little."""
+    with one_process(), few_terms():
+        yield
+
+
 def run_script(path: Path) -> tuple[str, dict[str, Any]]:
     """What a script prints and defines, run as a reader would, without another start of Python.
 
     One with a guard makes a study, by a model of its own.
     """
     makes_study = "__main__" in path.read_text(encoding="utf-8")
-    with one_process() if makes_study else nullcontext(), redirect_stdout(StringIO()) as printed:
+    with studies_here() if makes_study else nullcontext(), redirect_stdout(StringIO()) as printed:
         defined = runpy.run_path(str(path), run_name="__main__")
     return printed.getvalue(), defined
 
@@ -303,11 +313,13 @@ def test_commands_have_the_options_that_are_written() -> None:
     assert parsed > 10
 
 
-def test_commands_that_are_marked_run(workplace: Path) -> None:
+def test_commands_that_are_marked_run(workplace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     marked = {block.page for block in all_blocks("sh") if block.remark == "run"}
     assert marked
     for above, block in (pair for page in marked for pair in pairwise(blocks(page)) if pair[0].remark == "run"):
         printed = ""
+        # Half-widths that a page does not show are those of a few studies that are made up.
+        monkeypatch.setattr(half_width, "STUDIES", STUDIES if "half-width" in block.text else 20)
         for arguments in commands(above):
             found = CliRunner().invoke(app, arguments)
             assert found.exit_code == 0, f"{above}: {found.output}"

@@ -57,8 +57,11 @@ def test_a_look_without_speeds_names_libraries_machine_and_cache() -> None:
 
 def test_landings_and_flights_are_timed_beside_the_reference_machine(monkeypatch: pytest.MonkeyPatch) -> None:
     from lithobrake.doctor import speed
+    from lithobrake.pipeline.planning import expected_time
 
-    monkeypatch.setattr(speed, "FLIGHTS", 20)
+    for name, count in (("FLIGHTS", 20), ("LANDINGS", 3), ("STEPS", 40)):
+        monkeypatch.setattr(speed, name, count)
+    monkeypatch.setattr(expected_time, "STEPS", speed.STEPS)
     found = json.loads(RUNNER.invoke(app, ["doctor", "--json"]).stdout)
     assert [one["what"].split()[0] for one in found["speeds"]] == ["steps", "landings", "flights"]
     assert all(math.isfinite(one["here"]) and one["here"] > 0.0 < one["reference"] for one in found["speeds"])

@@ -14,6 +14,7 @@ from lithobrake.chaos import Uniform
 from lithobrake.emulator import latent_variable
 from lithobrake.emulator.latent_variable import NOISE_SHARES, LatentProblem, latent_terms, nodes_of
 
+from ..pipeline.few_terms import few_terms
 from ..quick_studies import quick_studies
 
 INPUTS = {"a": Uniform(0.0, 1.0), "b": Uniform(0.0, 1.0)}
@@ -38,7 +39,7 @@ def runs(seed: int = 0) -> dict[str, Any]:
 
 @cache
 def fitted() -> emulator.Emulator:
-    with quick_studies():
+    with quick_studies(), few_terms():
         return emulator.fit(INPUTS, **runs())
 
 
@@ -122,7 +123,7 @@ def test_a_gain_within_its_standard_error_is_no_law() -> None:
         rng = np.random.default_rng(seed)
         x = rng.random((60, 2))
         y = 0.35 * x[:, 0] + 0.5 * rng.standard_normal(60)
-        models.append(emulator.fit(INPUTS, x, y, groups=np.arange(60) // 5))
+        models.append(emulator.fit(INPUTS, x, y, groups=np.arange(60) // 5, form="rows"))
     luck, law = models
     assert (luck.follows_inputs, luck.scores.gain, luck.scores.gain_error) == (False, 0.0, 0.0)
     assert "The inputs do not improve the prediction" in luck.statement_on("beds")
@@ -243,7 +244,7 @@ def stored_emulator(bounds_follow_inputs: bool = False) -> emulator.Emulator:
     outcome = np.where(rng.random(90) < 0.1, "stuck", "free")
     y[outcome == "stuck"] = np.nan
     upper = np.column_stack([limit, np.full((90, 2), np.inf)])
-    with quick_studies():
+    with quick_studies(), few_terms():
         return emulator.fit(STORED_INPUTS, x, y, groups=np.arange(90) % 9, outcome=outcome,
             outcomes=("free", "stuck", "lost"), lower=[0.0, -np.inf, -np.inf], upper=upper, riders=("label",),
             output_names=("speed", "spin", "label"))  # fmt: skip
@@ -331,8 +332,10 @@ POINTS = {name: np.atleast_2d([0.3] if name != "positive" else [0.05, 0.6]) for 
 @cache
 def expand(name: str) -> emulator.Emulator:
     inputs, runs, given = FITS[name]
-    with quick_studies(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(latent_variable, "FOLDS", 3)
+    with quick_studies(), few_terms(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(latent_variable, "FOLDS", 2)
+        # One degree above those of the laws.
+        patch.setattr(latent_variable, "HIGHEST_DEGREE", 2)
         return emulator.fit(inputs, *runs, **given)
 
 
@@ -341,7 +344,7 @@ def test_a_law_of_its_own_class_is_found(place: float) -> None:
     spread = 0.5 + 0.2 * place
     # Of a law that is a line over x, the standard error at x in units of the spread; four of them are allowed.
     error = 4.0 * spread * np.sqrt((1.0 + 3.0 * place**2) / RUNS)
-    draws, law = expand("line").sample([[place]], 100_000)[0, :, 0], expand("line").output_law([[place]])
+    draws, law = expand("line").sample([[place]], 50_000)[0, :, 0], expand("line").output_law([[place]])
     assert abs(law.mean[0] - (1.0 + place)) < error
     assert abs(draws.std() - spread) < error / np.sqrt(2.0)
     for level in (0.05, 0.5, 0.95):
@@ -358,7 +361,7 @@ def test_it_is_nearer_than_a_normal_with_the_right_mean_and_spread(name: str, la
     levels = (np.arange(2000) + 0.5) / 2000
     errors, errors_of_normal = [], []
     for place in np.array(places):
-        many = law(np.tile(place, (200_000, 1)), stats.norm.ppf((np.arange(200_000) + 0.5) / 200_000))
+        many = law(np.tile(place, (20_000, 1)), stats.norm.ppf((np.arange(20_000) + 0.5) / 20_000))
         exact = np.quantile(many, levels)
         normal = stats.norm.ppf(levels, many.mean(), many.std())
         errors.append(((expand(name).output_law([place]).quantile(levels)[0] - exact) ** 2).mean() / many.var())
@@ -399,9 +402,9 @@ def test_two_branches_are_two_peaks() -> None:
 
 def test_bounds_are_never_crossed() -> None:
     bounded, corners = expand("bounded"), [[-1.0], [1.0]]
-    for values in (bounded.sample(corners, 100_000), bounded.output_law(corners).quantile([1e-15, 1.0 - 1e-15])):
+    for values in (bounded.sample(corners, 50_000), bounded.output_law(corners).quantile([1e-15, 1.0 - 1e-15])):
         assert 0.0 < values.min() < values.max() < 0.4
-    assert expand("positive").sample([[0.0, 0.9]], 100_000).min() > 0.0
+    assert expand("positive").sample([[0.0, 0.9]], 50_000).min() > 0.0
     law = bounded.output_law([[0.0]])
     np.testing.assert_array_equal(law.density([-1.0, 0.0, 0.4, 9.0]), np.zeros((1, 4)))
     np.testing.assert_allclose(law.cdf([-1, 0.0, 0.4, 9.0]), [[0.0, 0.0, 1.0, 1.0]], rtol=1e-14)

@@ -13,6 +13,8 @@ import pytest
 from lithobrake.files.atomic import atomic_path, lock_holder, locked, write_whole
 from lithobrake.files.reading import NUMBER, DamagedFileError, check, parsed, read_json, read_rows, reading, source_hash
 
+from ..syntax_trees import syntax_tree
+
 FORM = {"files": {str: {"key": str}}, "wall_s": {str: NUMBER}, "names": [str]}
 GOOD = {"files": {"a.csv": {"key": "1f"}}, "wall_s": {"bed": 1.5, "fly": 2}, "names": ["a"]}
 DAMAGED = {"nothing": "", "no JSON": "{", "no text": b"\xff\xfe\x00", "a list": "[1, 2]", "a number": "3",
@@ -150,8 +152,9 @@ PACKAGE = Path(__file__).parents[2] / "lithobrake"
 
 def written_formats() -> Iterator[str]:
     """What the package's code assigns to a constant FORMAT, or to the entry "format" of a file."""
-    for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    sources = {path: path.read_text(encoding="utf-8") for path in PACKAGE.rglob("*.py")}
+    for path in (path for path, text in sources.items() if "FORMAT" in text or '"format"' in text):
+        for node in ast.walk(syntax_tree(path)):
             if isinstance(node, ast.Assign):
                 for target in node.targets:
                     yield from _formats(target, node.value)

@@ -1,5 +1,6 @@
 """What tests of scores share."""
 
+import sys
 from types import ModuleType
 
 import pytest
@@ -7,7 +8,8 @@ import pytest
 
 @pytest.fixture(scope="session")
 def scoringrules() -> ModuleType:
-    """The library that scores are compared with, which compiles for seconds where it is imported."""
-    import scoringrules
-
+    """The library that scores are compared with; where it finds Numba it compiles all of its scores for seconds."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "numba", None)
+        import scoringrules
     return scoringrules

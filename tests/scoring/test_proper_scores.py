@@ -67,7 +67,7 @@ def test_the_truth_has_the_best_mean_score(score: str) -> None:
     generator = np.random.default_rng(3)
     truth, error = generator.normal(0.0, 1.0, (300, 3)), 0.5
     observed = truth[:, :1] + generator.normal(0.0, error, (300, 1))
-    sample = generator.normal(0.0, 1.0, (300, 3))
+    sample = generator.normal(0.0, 1.0, (150, 3))
 
     def mean(shift: float, scale: float) -> float:
         values = shift + scale * sample
@@ -76,8 +76,8 @@ def test_the_truth_has_the_best_mean_score(score: str) -> None:
             hits = np.arange(1000) < 1000 * share
             return float(np.mean([log_score(hits if one > 0.5 else ~hits, 2) for one in truth[:, 0]]))
         if score == "crps":
-            return float(np.mean([crps(values[:, 0], one, error).of() for one in observed[:100, 0]]))
-        return float(np.mean([energy_score(values, one).of() for one in truth[:100]]))
+            return float(np.mean([crps(values[:, 0], one, error).of() for one in observed[:50, 0]]))
+        return float(np.mean([energy_score(values, one).of() for one in truth[:50]]))
 
     best = mean(0.0, 1.0)
     for shift, scale in ((1.0, 1.0), (0.0, 0.3), (0.0, 3.0)):

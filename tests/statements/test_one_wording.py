@@ -30,14 +30,16 @@ ESTIMATES = {
 @cache
 def sentences() -> tuple[tuple[str, str, ast.JoinedStr], ...]:
     """File, skeleton and node of every f-string of the package but for messages of errors."""
-    found = []
+    found: list[tuple[str, str, ast.JoinedStr]] = []
+    left: list[ast.AST]
     for path in sorted(PACKAGE.rglob("*.py")):
-        tree = syntax_tree(path)
-        raised = {id(node) for one in ast.walk(tree) if isinstance(one, ast.Raise) for node in ast.walk(one)}
-        name = path.relative_to(PACKAGE).as_posix()
-        for node in ast.walk(tree):
-            if isinstance(node, ast.JoinedStr) and id(node) not in raised:
+        name, left = path.relative_to(PACKAGE).as_posix(), [syntax_tree(path)]
+        while left:
+            node = left.pop()
+            if isinstance(node, ast.JoinedStr):
                 found.append((name, skeleton(node), node))
+            if not isinstance(node, ast.Raise):
+                left.extend(ast.iter_child_nodes(node))
     return tuple(found)
 
 

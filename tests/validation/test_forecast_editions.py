@@ -4,7 +4,6 @@ import datetime
 import hashlib
 import math
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
@@ -541,14 +540,16 @@ def test_landers_of_other_studies_or_bytes_are_refused(tmp_path: Path) -> None:
         landers_of(tmp_path / "copy")
 
 
-def test_the_promised_score_of_the_first_edition_is_printed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_promised_score_of_the_first_edition_is_printed(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """The command of its page, with the bits that it gave on the day of the forecast."""
     import score
 
     command = [str(SCRIPTS / "score.py"), "juventas", "--end", "at_rest"]
-    asked = [sys.executable, *command, "--time-min", "25", "--contacts", "3"]
-    said = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
-    found = [line.split() for line in said.splitlines()[1:]]
+    monkeypatch.setattr(sys, "argv", [*command, "--time-min", "25", "--contacts", "3"])
+    score.main()
+    found = [line.split() for line in capsys.readouterr().out.splitlines()[1:]]
     assert found == [
         ["end", "0.09", "0.45", "2.00"], ["time_min", "1.28", "2.52", "3.00"], ["contacts", "1.62", "1.76", "2.58"],
     ]  # fmt: skip

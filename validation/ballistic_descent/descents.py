@@ -75,19 +75,22 @@ def back_in_time(
     assert body.partner is not None
     place, velocity = radius(body) * up, speed[:, None] * up
     ground, primary = radius(body), radius(body.partner.body)
+    apart, orbit = body.orbit.distance, primary_share(body) * body.orbit.distance
     found = {one: Descents(np.full((len(up), 6), np.nan), np.full(len(up), np.nan)) for one in distances}
     is_aloft = np.ones(len(up), dtype=bool)
     for number in range(1, round(LONGEST / STEP) + 1):
         there, going = step(body, place[is_aloft], velocity[is_aloft], -1.0)
         place[is_aloft], velocity[is_aloft] = there, going
         height = np.linalg.norm(place, axis=1)
-        is_aloft &= (height > ground) & (np.linalg.norm(place - [body.orbit.distance, 0.0, 0.0], axis=1) > primary)
-        from_centre = np.hypot(place[:, 0] - primary_share(body) * body.orbit.distance, place[:, 1])
-        is_free = is_aloft & (not outside or from_centre > primary_share(body) * body.orbit.distance)
+        is_aloft &= (height > ground) & (np.linalg.norm(place - [apart, 0.0, 0.0], axis=1) > primary)
+        from_centre = np.hypot(place[:, 0] - orbit, place[:, 1])
+        is_free = is_aloft & (not outside or from_centre > orbit)
         for distance, descents in found.items():
             new = is_free & (height > distance) & np.isnan(descents.times)
             descents.times[new] = number * STEP
             descents.states[new] = np.hstack([place[new], -velocity[new]])
+        if all(np.isfinite(descents.times[is_aloft]).all() for descents in found.values()):
+            break
     return found
 
 

@@ -103,7 +103,8 @@ def number(of: Sample, name: str) -> dict[str, Any]:
     members = {one: np.flatnonzero(beds == one) for one in unique}
     by_branch = [unique[unique // 1000 == one] for one in np.unique(unique // 1000)]
     for _ in range(1000):
-        chosen = np.concatenate([random.choice(one, len(one)) for one in by_branch])
+        # As random.choice draws them, which takes ten times as long.
+        chosen = np.concatenate([one[random.integers(len(one), size=len(one))] for one in by_branch])
         rows = np.concatenate([members[one] for one in chosen])
         medians.append(quantiles(values[rows], of.weight[rows])[2])
     lower, upper = np.quantile(medians, (0.05, 0.95))

@@ -159,7 +159,7 @@ class FinishedStudy(PlannedStudy):
 def test_pairs_that_were_made_have_their_own_correlation(tmp_path: Path) -> None:
     studies: list[PlannedStudy] = []
     for name, changes in (("slow", {}), ("fast", {"delivery": FASTER})):
-        tables = journey_tables(journey={"count": 14}, **changes) | {"seed": 2}
+        tables = journey_tables(journey={"count": 8}, **changes) | {"seed": 2}
         run_without_emulator(tables, tmp_path / name)
         path = tmp_path / f"{name}.toml"
         path.write_text(tomli_w.dumps(tables), encoding="utf-8")
