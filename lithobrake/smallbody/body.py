@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -55,7 +56,7 @@ class Body:
                     f"{apart:.4g} m apart, within their radii together ({reach:.4g} m); give a longer period."
                 )
 
-    @property
+    @cached_property
     def orbit(self) -> Orbit[float]:
         """How the partner moves in the frame of this body."""
         return self.orbit_with(self.gravitational_parameter, self.spin_rate)
@@ -290,8 +291,9 @@ class Partner:
         total = parameter + self.body.gravitational_parameter
         mean_motion = 2.0 * math.pi / self.period
         distance = sphere = (total / mean_motion**2) ** (1.0 / 3.0)
+        flattened = 1.5 * (flattening + self.body.flattening)
         for _ in range(ORBIT_ITERATIONS):
-            distance = sphere * (1.0 + 1.5 * (flattening + self.body.flattening) / distance**2) ** (1.0 / 3.0)
+            distance = sphere * (1.0 + flattened / distance**2) ** (1.0 / 3.0)
         # Zero times the parameter makes it a number a flight where that is.
         angle = 0.0 * parameter + math.radians(self.longitude_deg)
         mass_fraction = self.body.gravitational_parameter / total
