@@ -1,5 +1,4 @@
-"""A whole study through the command line, on a bed of a few grains: every stage real, stopped, killed and gone on with.
-"""
+"""A whole study through the command line, on a bed of a few grains: every stage real, stopped, killed and gone on."""
 
 import json
 import os
@@ -143,8 +142,9 @@ def test_a_deleted_file_is_made_again_with_the_same_bytes_and_nothing_before_it(
 # Stages in which a study is stopped, one of each way in which files are made, and what ends; in a campaign, how many
 # runs the ledger has then: 13 of the screening, and 12 tests in the end.
 MOMENTS = (
-    ("bed", "coordinator", None), ("screening_runs", "interrupt", range(2, 6)), ("screening_runs", "worker", range(7, 11)),
-    ("test_runs", "both", range(15, 20)), ("fly", "coordinator", None), ("report", "coordinator", None),
+    ("bed", "coordinator", None), ("screening_runs", "interrupt", range(2, 6)),
+    ("screening_runs", "worker", range(7, 11)), ("test_runs", "both", range(15, 20)),
+    ("fly", "coordinator", None), ("report", "coordinator", None),
 )  # fmt: skip
 # Other stages make theirs the same way, or end before a kill could hit them.
 ALIKE = {"landing": "bed", "refined_runs": "test_runs", "sample": "fly", "paths": "fly", "hard_ground": "fly",

@@ -3,8 +3,8 @@
 The faces of packages import nothing before they are asked for something, so files behind them are named.
 """
 
-import matplotlib.figure
-import scipy.stats
+import matplotlib.figure  # noqa: F401
+import scipy.stats  # noqa: F401
 from numba.core.registry import cpu_target
 
 import lithobrake.chaos.surrogate
