@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import lithobrake
-from lithobrake.analysis import identifiability
+from lithobrake.analysis import predictive_p_value
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import compare_studies, infer_study, map_sites, rare_failure, site
 from lithobrake.pipeline.runs.solver import function_identity
@@ -134,7 +134,7 @@ def test_a_bounce_that_was_seen_tells_the_friction_of_a_study_to_rest(
     asked: StudyResults, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Bounces that are made up, to see whether one like this is seen at all; tests/analysis tests them.
-    monkeypatch.setattr(identifiability, "REPLICATES", 50)
+    monkeypatch.setitem(predictive_p_value.__globals__, "REPLICATES", 50)
     bounces = tmp_path / "bounces.csv"
     bounces.write_text("speed_out,error:speed_out,impact.speed,impact.incidence_deg\n0.035,0.001,0.06,5\n")
     content = infer_study(asked.folder, bounces)
