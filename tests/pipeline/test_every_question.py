@@ -10,13 +10,13 @@ import pytest
 import lithobrake
 from lithobrake.analysis import predictive_p_value
 from lithobrake.files.reading import read_rows
-from lithobrake.pipeline import compare_studies, infer_study, map_sites, rare_failure, site
+from lithobrake.pipeline import compare_studies, infer_study, map_sites, rare_failure
 from lithobrake.pipeline.runs.solver import function_identity
 from lithobrake.results import StudyResults
-from lithobrake.smallbody import built_in_bodies
 from lithobrake.study import StudySource
 
 from ..quick_studies import quick_studies
+from .coarse_bodies import coarse_bodies
 from .journeys import bouncing_lander
 
 LATITUDE, LONGITUDE = bouncing_lander.TABLES["delivery"]["latitude_deg"], -60.0
@@ -55,12 +55,8 @@ def to_rest(**changes: dict[str, Any]) -> dict[str, Any]:
 
 @pytest.fixture(scope="module", autouse=True)
 def coarse() -> Iterator[None]:
-    """Bodies of 240 facets, where built-in ones have 1920."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(built_in_bodies, "RINGS", 5)
-        site._built_in.cache_clear()
+    with coarse_bodies():
         yield
-    site._built_in.cache_clear()
 
 
 @pytest.fixture(scope="module")
