@@ -27,7 +27,7 @@ typer.testing._get_command = cache(typer.testing._get_command)
 # while the other waits.
 LONGEST = (
     "test_kernels.py", "test_calibration.py",
-    "test_killed.py", "test_whole_study.py", "test_examples.py", "test_drawn_journeys.py", "test_killed_journeys.py",
+    "test_whole_study.py", "test_examples.py", "test_drawn_journeys.py", "test_killed_journeys.py",
     "test_pouring.py", "test_notebooks.py", "test_aiming.py", "test_state.py", "test_recreate.py",
 )  # fmt: skip
 

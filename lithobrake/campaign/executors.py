@@ -66,6 +66,8 @@ class LocalExecutor(Executor):
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self._closing = False
+        # Whether calls under way are ended, too.
+        self._ends_calls = False
         self._stillborn_count = 0
 
     @property
@@ -99,7 +101,7 @@ class LocalExecutor(Executor):
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Take no more calls; with cancel_futures, those that wait are cancelled and those under way are ended."""
         with self._lock:
-            self._closing = True
+            self._closing, self._ends_calls = True, self._ends_calls or cancel_futures
             given_up = [call.future for call in self._waiting] if cancel_futures else []
             if cancel_futures:
                 self._waiting.clear()
@@ -157,6 +159,9 @@ class LocalExecutor(Executor):
                 self._remove(idle)
                 with self._lock:
                     self._waiting.appendleft(call)
+            elif self._ends_calls:
+                # It was started while the others were ended.
+                idle.kill()
 
     def _end_idle(self) -> float | None:
         """End processes that have been idle for too long; how long until the next of them [s], None: none is idle."""
@@ -192,11 +197,14 @@ class LocalExecutor(Executor):
             call.future.set_exception(answer)
 
     def _pass_on_the_call_of(self, worker: Worker) -> None:
-        """Give the call of a process that died before it began with it to another one.
+        """Give the call of a process that died before it began with it to another one, unless calls are ended.
 
         Raises BrokenExecutor when this has happened to several in a row.
         """
         self._remove(worker)
+        if worker.call and self._ends_calls:
+            worker.call.future.set_exception(WorkerDiedError("its process was ended before it began"))
+            return
         self._stillborn_count += 1
         if worker.call:
             with self._lock:

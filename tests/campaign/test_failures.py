@@ -25,6 +25,7 @@ from lithobrake.campaign import (
     run,
     run_key,
 )
+from lithobrake.campaign.executors import WorkerDiedError
 from lithobrake.campaign.worker import Call, MainModuleError, Worker, refuse_unreachable
 
 X = np.array([[1.0, 0.5], [2.0, 0.5], [3.0, 0.5], [4.0, 0.5]])
@@ -230,6 +231,31 @@ def test_a_process_killed_before_it_begins_costs_no_run_a_try(tmp_path: Path, mo
     runs = campaign(tmp_path, models.parabola, workers=1)
     assert len(KilledFirst.started) == 2
     assert [(one.outcome, one.attempts) for one in runs.records] == [("clear", 1)] * 4
+
+
+class FirstStands(Worker):
+    """A process that stands still from the start: the first that starts."""
+
+    started: ClassVar[list[Worker]] = []
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.started.append(self)
+        if len(self.started) == 1:
+            os.kill(self.number, signal.SIGSTOP)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="other systems have no such signals")
+def test_a_call_that_is_ended_before_it_begins_is_given_to_no_other_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executors, "Worker", FirstStands)
+    executor = LocalExecutor(1)
+    future = executor.submit(abs, -1)
+    while not any(one.call for one in FirstStands.started):
+        time.sleep(0.001)
+    executor.shutdown(cancel_futures=True)
+    assert len(FirstStands.started) == 1
+    with pytest.raises(WorkerDiedError, match="ended before it began"):
+        future.result(timeout=0.0)
 
 
 # The model stands in a file of its own; what the script prints would come twice if a process imported it.

@@ -10,30 +10,26 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from lithobrake.files.atomic import lock_holder
 
 # Of each run, what it follows from and what came of it; not where, when and how fast it was made, or how often tried.
 DETERMINED = "key, status, outcome, inputs, draws, outputs, seed, replicate, reason, version"
-VICTIMS = ("coordinator", "worker", "both")
-
 # Each start is a process of its own, forked from one that has imported what a study needs: two dozen interpreters that
-# import it would take longer than all that they are killed in. The faces of packages import nothing before they are
-# asked for something, so files behind them are named.
+# import it would take longer than all that they are killed in.
 FORKS = multiprocessing.get_context("forkserver")
-FORKS.set_forkserver_preload(
-    ["lithobrake.cli", "lithobrake.chaos.surrogate", "lithobrake.dem.example_world", "lithobrake.pipeline.stages",
-        "lithobrake.pipeline.planning.planner", "lithobrake.pipeline.study_run", "lithobrake.report.pages.study_page",
-        "lithobrake.report.reports", "lithobrake.smallbody.flight",
-        "lithobrake.touchdown.simulation", "lithobrake.touchdown.bed_library", "matplotlib.figure", "scipy.stats"]
-)  # fmt: skip
+FORKS.set_forkserver_preload(["loaded_study"])
 # Pictures are drawn, and saved as empty ones: letters are what takes long to save.
 COMMAND = """
-import os, sys
+import os, signal, sys
 from functools import cache
 from matplotlib.figure import Figure
 from lithobrake.report import reports
 said = os.open({said!r}, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
 os.dup2(said, 1), os.dup2(said, 2)
+# Where the tests run in the background they ignore interrupts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 saved = reports._saved
 blank = cache(lambda kind: saved(Figure(figsize=(1.0, 1.0)), kind))
 reports._saved = lambda figure, kind: blank(kind)
@@ -48,15 +44,11 @@ def start(study: Path, out: Path, worker_count: int = 1, word: str = "run") -> B
     told = {"study": str(study), "out": str(out), "said": str(study.parent / "said.txt"), "workers": str(worker_count)}
     told["word"] = word
     process = FORKS.Process(target=exec, args=(COMMAND.format(**told), {}))
-    process.start()
+    with pytest.MonkeyPatch.context() as patch:
+        # Where the server of forks, which the first of them starts, finds what it loads.
+        patch.setenv("PYTHONPATH", str(Path(__file__).parent), prepend=os.pathsep)
+        process.start()
     return process
-
-
-def end(study: Path, out: Path, worker_count: int = 1) -> None:
-    """Run a study to its end, undisturbed."""
-    process = start(study, out, worker_count)
-    process.join(timeout=1200)
-    assert process.exitcode == 0, (study.parent / "said.txt").read_text()
 
 
 def workers(coordinator: int) -> list[int]:

@@ -1,5 +1,6 @@
 """Every question of every study: one of landers that are followed to rest, and one of first touchdowns alone."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 import lithobrake
+from lithobrake.analysis import predictive_p_value
 from lithobrake.files.reading import read_rows
 from lithobrake.pipeline import compare_studies, infer_study, map_sites, rare_failure
 from lithobrake.pipeline.runs.solver import function_identity
@@ -14,6 +16,7 @@ from lithobrake.results import StudyResults
 from lithobrake.study import StudySource
 
 from ..quick_studies import quick_studies
+from .coarse_bodies import coarse_bodies
 from .journeys import bouncing_lander
 
 LATITUDE, LONGITUDE = bouncing_lander.TABLES["delivery"]["latitude_deg"], -60.0
@@ -30,7 +33,7 @@ QUESTIONS: dict[str, dict[str, Any]] = {
     "expansion": {"screening_level": 2, "screening_degree": 2, "refined_level": 2, "refined_degree": 2,
                   "test_count": 10, "kept_outputs": ["speed_out"]},
     "monte_carlo": {"sample_count": 200},
-    "journey": {"emulated_count": 100},
+    "journey": {"emulated_count": 40},
     "flight": {"flight_count": 10},
     "hard_ground": {"count": 10},
 }  # fmt: skip
@@ -48,6 +51,12 @@ def to_rest(**changes: dict[str, Any]) -> dict[str, Any]:
     options = {"aim": {"grid": {"delivery.speed": [0.05, 0.07]}, "lander_count": 2, "best": "near"}}
     states = {"limit_states": QUESTIONS["limit_states"] | OF_JOURNEYS}
     return bouncing_lander.journey_tables(**QUESTIONS | options | states | changes)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse() -> Iterator[None]:
+    with coarse_bodies():
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +126,11 @@ def test_the_expansion_of_the_first_touchdown_knows_what_its_speed_depends_on(as
     assert found.scores["test_all"]["speed_out"].q2 > 0.0
 
 
-def test_a_bounce_that_was_seen_tells_the_friction_of_a_study_to_rest(asked: StudyResults, tmp_path: Path) -> None:
+def test_a_bounce_that_was_seen_tells_the_friction_of_a_study_to_rest(
+    asked: StudyResults, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Bounces that are made up, to see whether one like this is seen at all; tests/analysis tests them.
+    monkeypatch.setitem(predictive_p_value.__globals__, "REPLICATES", 50)
     bounces = tmp_path / "bounces.csv"
     bounces.write_text("speed_out,error:speed_out,impact.speed,impact.incidence_deg\n0.035,0.001,0.06,5\n")
     content = infer_study(asked.folder, bounces)
@@ -134,7 +147,7 @@ def test_a_rare_limit_state_is_found_by_first_touchdowns_of_a_study_to_rest(tmp_
 def test_sites_are_mapped_and_two_studies_compared_on_regions_of_soil(asked: StudyResults, tmp_path: Path) -> None:
     identity = function_identity(land)
     site_map = map_sites(
-        StudySource.of_tables(to_rest(), identity), asked.folder, cell_count=12, lander_count=100, worker_count=1,
+        StudySource.of_tables(to_rest(), identity), asked.folder, cell_count=12, lander_count=40, worker_count=1,
         model=land,
     )  # fmt: skip
     assert len(site_map.cells) >= 10

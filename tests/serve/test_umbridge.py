@@ -20,6 +20,7 @@ from lithobrake.pipeline.runs.solver import LANDING
 from lithobrake.serve import ClientGoneError, ClientServer, ServedModel
 from lithobrake.vocabulary.quantities import OUTPUTS
 
+from ..pipeline.few_terms import few_terms
 from ..quick_studies import quick_studies
 
 umbridge = pytest.importorskip("umbridge")
@@ -288,7 +289,7 @@ def test_a_whole_study_takes_its_landings_from_a_server_and_serves_its_emulator(
         head, _, tail = text.partition("[design]")
         tail = tail[tail.index("[monte_carlo]") :].replace("10_000", "200").replace("count = 50", "count = 5")
         path.write_text(f"{head}[design]\nrun_count = 60\n\n{tail.replace('count = 200 ', 'count = 0 ')}")
-        with quick_studies():
+        with quick_studies(), few_terms():
             results = lithobrake.run(path, tmp_path / "out", workers=1, report=False)
         server.shutdown()
     assert results.runs.row_count == 60
@@ -308,7 +309,8 @@ def served_emulator(tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("emulator")
     served = ServedStudy(BALL, folder)
     x = sobol_sequence(served.design.inputs, 64)
-    fit(served.design.inputs, x, x[:, 0]).save(folder / "emulator.json")
+    with few_terms():
+        fit(served.design.inputs, x, x[:, 0], form="rows").save(folder / "emulator.json")
     return served.models()[2]
 
 

@@ -6,7 +6,7 @@ lander = { shape = "box", edges = [0.06, 0.07, 0.08], mass = 1.0 }
 journey = { count = 2, duration = 20000.0, emulated_count = 40 }
 site = { body = "dimorphos" }
 [bed]
-grain_count = 60
+grain_count = 48
 width = [0.5, 0.5]
 diameter = { distribution = "constant", value = 0.074 }
 cloud_point_count = 10
@@ -16,7 +16,7 @@ bed_count = 1
 density = 2500.0
 young_modulus = 2e5
 poisson_ratio = 0.25
-restitution = 0.8
+restitution = 0.5
 friction = { distribution = "uniform", lower = 0.4, upper = 0.9 }
 [delivery]
 latitude_deg = 10.0

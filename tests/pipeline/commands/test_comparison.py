@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from lithobrake.results.table import Table
 from lithobrake.statements.comparison import sentence
 from lithobrake.vocabulary.quantities import BEDS
 
+from ..coarse_bodies import coarse_bodies
 from ..journeys.bouncing_lander import journey_tables, run_without_emulator
 from ..journeys.test_delivered_journeys import tables, write_states
 
@@ -136,6 +138,12 @@ FASTER = {"speed": {"distribution": "uniform", "lower": 0.08, "upper": 0.16}}
 def made(folder: Path, seed: int = 2, **changes: dict[str, object]) -> Path:
     run_without_emulator(journey_tables(**changes) | {"seed": seed}, folder)
     return folder
+
+
+@pytest.fixture(scope="module", autouse=True)
+def coarse() -> Iterator[None]:
+    with coarse_bodies():
+        yield
 
 
 @pytest.fixture(scope="module")

@@ -31,7 +31,7 @@ from ..killed_studies import kill, ledger, start
 from .soil_journeys import STUDY
 
 # What is killed when the ledger has so many touchdowns; there are 8 in all. That a study goes on alike after its
-# coordinator alone was killed, at any stage, tests/pipeline/test_killed.py shows. The cluster has two workers.
+# coordinator alone was killed, at any stage, tests/test_whole_study.py shows. The cluster has two workers.
 KILLED = {1: "worker", 4: "both"}
 WORKERS = 1
 ROLLING = STUDY.replace("\nsite = { ", "\nsite = { rotation = { yaw_deg = 30.0, roll_deg = 60.0 }, ").replace(

@@ -27,7 +27,9 @@ from ...few_grains import few_grains
 from ...quick_studies import OwnProcess
 from ..killed_studies import kill, start
 
-TEXT = few_grains(30, 0.54, 0.05).replace("[grain]", "bed_count = 3\n[grain]") + "[journey]\ntouchdowns = 1\n"
+TEXT = (
+    few_grains(12, 0.3, 0.1, sides="walls").replace("[grain]", "bed_count = 3\n[grain]") + "[journey]\ntouchdowns = 1\n"
+)
 STUDY = check_tables(tomllib.loads(TEXT), Path())
 NAMES = tuple(bed_files(STUDY))
 
