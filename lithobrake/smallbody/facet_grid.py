@@ -278,13 +278,31 @@ def first_entry(grid: Grid, corner: Floats, origin: Floats, along: Floats) -> tu
     return best, hit
 
 
+def cones(corner: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A cone from the origin around each facet: axis, and least cosine of what is within; [facet_count, 4]."""
+    # A corner in the origin has no direction, and its facet no cone.
+    with np.errstate(invalid="ignore"):
+        toward = corner / np.linalg.norm(corner, axis=2, keepdims=True)
+        axis = toward.sum(axis=1)
+        axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    cosine = np.einsum("fi,fki->fk", axis, toward).min(axis=1)
+    # A cone nearly as wide as a half space holds everything.
+    return np.column_stack([axis, np.where(cosine > 0.1, cosine - 1e-6, -2.0)])
+
+
 @compiled
-def outermost_hit(corner: Floats, directions: Floats, distance: Floats, facet: Integers) -> None:
-    """Write the farthest hit of rays from the origin along `directions` [count, 3]: distance [m] (nan: none), facet."""
+def outermost_hit(corner: Floats, cone: Floats, directions: Floats, distance: Floats, facet: Integers) -> None:
+    """Write the farthest hit of rays from the origin along unit directions [count, 3]: distance [m] (nan: none), facet.
+
+    cone: those of the facets.
+    """
     origin = np.zeros(3)
     for r in range(len(directions)):
         distance[r], facet[r] = np.nan, -1
+        x, y, z = directions[r, 0], directions[r, 1], directions[r, 2]
         for f in range(len(corner)):
+            if x * cone[f, 0] + y * cone[f, 1] + z * cone[f, 2] < cone[f, 3]:
+                continue
             t, side = intersect_facet(corner, f, origin, directions[r])
             # Going outwards the line leaves the body: the side is negative.
             # `not t <=` lets the first hit pass, against a distance that is still NaN.

@@ -12,7 +12,7 @@ from lithobrake.geometry.mesh import closed_faces, mass_properties, thinned
 from lithobrake.geometry.mesh_files import read_mesh
 from lithobrake.geometry.mesh_units import labelled_mesh
 from lithobrake.smallbody.attraction import Gravity
-from lithobrake.smallbody.facet_grid import Grid, heights, near_heights, outermost_hit, pseudonormals
+from lithobrake.smallbody.facet_grid import Grid, cones, heights, near_heights, outermost_hit, pseudonormals
 from lithobrake.smallbody.gravity_table import LEVELS, GravityTable
 from lithobrake.smallbody.gravity_table_build import TableError, gravity_table_of
 from lithobrake.smallbody.multipole import RADII, Multipole
@@ -167,6 +167,11 @@ class Shape:
         return pseudonormals(self.vertices, self.faces, self.normals)
 
     @cached_property
+    def cones(self) -> NDArray[np.float64]:
+        """Cones from the origin around the facets: axes, and cosines of their half angles, shape [facet_count, 4]."""
+        return cones(self.corners)
+
+    @cached_property
     def neighbours(self) -> NDArray[np.int64]:
         """Facets across the edges 01, 12 and 20 of each facet, shape [facet_count, 3]."""
         forth = self.faces * len(self.vertices) + self.faces[:, [1, 2, 0]]
@@ -223,7 +228,7 @@ class Shape:
         direction = np.stack([across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)], axis=-1)
         rays = np.ascontiguousarray(direction.reshape(-1, 3))
         distance, facet = np.empty(len(rays)), np.empty(len(rays), dtype=np.int64)
-        outermost_hit(self.corners, rays, distance, facet)
+        outermost_hit(self.corners, self.cones, rays, distance, facet)
         if (facet < 0).any():
             raise ValueError(
                 f"{self.name}: no surface at latitude_deg {latitude_deg!r}, longitude_deg {longitude_deg!r}; "

@@ -374,3 +374,24 @@ def test_a_partner_on_the_other_side_or_behind_the_orbiter_hides_nothing() -> No
     up, far = np.array([[1.0, 0.0, 0.0]]), Screen(np.tile([DISTANCE, 0.0, 0.0], (2, 1)), 100.0, 100.0)
     along = np.tile([1.0, 0.0, 0.0], (1, 2, 1))
     assert seen_from(BALL, 100.5 * up, up, along, distance=[[500.0, 1500.0]], screen=far).tolist() == [[True, False]]
+
+
+def test_a_place_is_the_farthest_that_its_direction_meets() -> None:
+    """Against all facets: from the middle, beside a corner, from a corner itself, and near a pole."""
+    whole = top_shape((2.0, 3.0, 4.0), 0.3)
+    random = np.random.default_rng(5)
+    for moved in (np.zeros(3), 0.98 * whole.vertices[40], whole.vertices[40], [0.0, 0.0, 1.9]):
+        shape = Shape(whole.vertices - moved, whole.faces)
+        ways = random.normal(size=(200, 3))
+        ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        corner, edges = shape.corners[:, 0], np.diff(shape.corners, axis=1)
+        # Ray and facet: distance and two weights along its edges from its first corner.
+        system = np.stack(np.broadcast_arrays(ways[:, None], -edges[None, :, 0], -edges[None, :, 1]), axis=-1)
+        with np.errstate(all="ignore"):
+            distance, first, second = np.moveaxis(np.linalg.solve(system, corner[None, ..., None])[..., 0], -1, 0)
+        meets = (distance > 1e-9) & (first >= 0.0) & (second >= 0.0) & (second <= first) & (first <= 1.0)
+        farthest = np.where(meets, distance, -np.inf).max(axis=1)
+        latitude, longitude = np.degrees(np.arcsin(ways[:, 2])), np.degrees(np.arctan2(ways[:, 1], ways[:, 0]))
+        for way, want, *place in zip(ways, farthest, latitude, longitude, strict=True):
+            if want > 0.0:
+                assert shape.surface_point(*place) == pytest.approx(want * way, abs=1e-8)
