@@ -21,6 +21,7 @@ from numba import types
 from numba.core.caching import NullCache
 from numba.core.compiler import CompileResult
 from numba.core.registry import CPUDispatcher
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 from lithobrake.compilation import lighter_compilation
@@ -186,7 +187,8 @@ class KernelCache(NullCache):
         return folder is not None and any(folder.glob(f"{self.name}-*"))
 
     def load_overload(self, sig: Any, target_context: Any) -> CompileResult | None:
-        target_context.refresh()
+        # Machine code needs what allocates, and not all that Numba could compile, which takes as long as the rest.
+        rtsys.initialize(target_context)
         content = self._disk.read(self._file(sig, target_context.codegen()))
         return None if content is None else CompileResult._rebuild(target_context, *pickle.loads(content))
 
