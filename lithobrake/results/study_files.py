@@ -5,7 +5,7 @@ import math
 import os
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cache, cached_property
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -183,12 +183,16 @@ def json_values(value: Any) -> Any:
     return _form(type(value)).dump_python(value, mode="json", by_alias=True, exclude_defaults=True, warnings="error")
 
 
-@cache
+_FORMS: dict[type, "TypeAdapter[Any]"] = {}
+
+
 def _form(kind: type[Any]) -> "TypeAdapter[Any]":
-    """What reads and writes values of a kind, which takes a tenth of a second to make."""
+    """What reads and writes values of a kind, made once, as that takes a tenth of a second."""
     from pydantic import TypeAdapter
 
-    return TypeAdapter(kind)
+    if kind not in _FORMS:
+        _FORMS[kind] = TypeAdapter(kind)
+    return _FORMS[kind]
 
 
 def results_in(kind: type[T], content: Any, place: str = "") -> T:

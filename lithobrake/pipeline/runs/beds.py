@@ -78,7 +78,10 @@ def _counted(count: Path, function: Callable[[], None]) -> None:
     """Call a function; write how many kernels it has compiled, and how many there are."""
     from lithobrake.compilation.compiled import watched
 
-    with watched("dem", lambda done, total: count.write_text(f"{done} {total}")):
+    def write(done: int, total: int) -> None:
+        count.write_text(f"{done} {total}")
+
+    with watched("dem", write):
         function()
 
 
