@@ -14,6 +14,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from lithobrake.export import ExportOptions, ephemerides, export_study
+from lithobrake.export import attitudes as attitude_messages
 from lithobrake.export.czml import SHOWN
 from lithobrake.export.flown import Flown
 from lithobrake.export.oem import Frame, Segment, epoch_texts, write_oem
@@ -362,7 +363,10 @@ def test_icrf_without_a_pole_and_attitudes_without_journeys_are_refused(results:
 def packets(delivered: StudyResults, tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     """All landers of the study, after the library has read the document."""
     czml3 = pytest.importorskip("czml3")
-    (path,) = written(delivered, tmp_path_factory.mktemp("czml"), "czml", step=600.0)
+    with pytest.MonkeyPatch.context() as patch:
+        # Between the ends of its flights, at which it is looked at, a lander is seldom shown.
+        patch.setattr(attitude_messages, "STEP_ANGLE", np.radians(60.0))
+        (path,) = written(delivered, tmp_path_factory.mktemp("czml"), "czml", step=600.0)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         document = czml3.Document.load(path)
