@@ -4,6 +4,7 @@ import io
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -346,6 +347,7 @@ def test_table_that_cannot_be_kept_is_made_in_memory(cube, folder, caplog):
     assert again.tobytes() == values.tobytes()
 
 
+@cache
 def bumpy(gravity_facets: int | None = None) -> Shape:
     """A body of 8192 facets with hills of 3 %, some 800 m across."""
     pytest.importorskip("fast_simplification")
