@@ -465,7 +465,7 @@ def test_threads_change_no_bit(stepping: str) -> None:
     alone, shared = gas(), gas()
     shared.thread_count = 2
     for world in (alone, shared):
-        advance(world, 0.1, stepping)
+        advance(world, 0.05, stepping)
     assert alone.energy()["damping"] > 0.0
     for name in ("position", "velocity", "orientation", "angular_momentum", "contact_force", "contact_torque"):
         assert np.array_equal(getattr(alone, name), getattr(shared, name))
