@@ -200,9 +200,9 @@ print(rotation.ravel().tolist())
 """
 
 
-def test_processes_that_start_together_compile_once(tmp_path):
+def test_processes_that_start_together_compile_once(cache, caplog):
     """Two start into an empty cache together, a third finds it filled: all with the same numbers, one compiles."""
-    environment = {**os.environ, "LITHOBRAKE_CACHE": str(tmp_path)}
+    environment = {**os.environ, "LITHOBRAKE_CACHE": str(cache)}
 
     def process() -> subprocess.Popen[str]:
         return subprocess.Popen([sys.executable, "-c", TURN], env=environment, text=True, stdin=subprocess.PIPE,
@@ -221,6 +221,8 @@ def test_processes_that_start_together_compile_once(tmp_path):
         "",
         "Waiting for another process that compiles the soft-surface engine: about half a minute.\n",
     }
-    out, message = process().communicate("go\n")
-    assert out == "ready\n" + told[0][0]
-    assert message == ""
+    (file,) = kept(cache)
+    before = file.stat().st_mtime_ns
+    assert rotation() == TURNED
+    assert caplog.messages == []
+    assert [path.stat().st_mtime_ns for path in kept(cache)] == [before]

@@ -465,7 +465,7 @@ def test_threads_change_no_bit(stepping: str) -> None:
     alone, shared = gas(), gas()
     shared.thread_count = 2
     for world in (alone, shared):
-        advance(world, 0.1, stepping)
+        advance(world, 0.05, stepping)
     assert alone.energy()["damping"] > 0.0
     for name in ("position", "velocity", "orientation", "angular_momentum", "contact_force", "contact_torque"):
         assert np.array_equal(getattr(alone, name), getattr(shared, name))
@@ -500,7 +500,7 @@ def test_what_slides_over_the_boundary_notices_nothing(stepping: str) -> None:
         shape: Shape = Sphere(0.05) if spheres else Box((0.15, 0.12, 0.1))
         lander = world.add_body(shape, DULL, place, velocity=(8.0, 1.0, -1.0))
         world.watch(lander)
-        advance(world, 0.2 if spheres else 0.14, stepping)
+        advance(world, 0.2 if spheres else 0.1, stepping)
         motion = world.motion_of(lander)
         motions.append((motion.position - place, motion.velocity, motion.spin))
         assert world.watched["last_contact"] - world.watched["first_contact"] > 0.05

@@ -2,7 +2,8 @@
 
 import importlib.util
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
@@ -13,7 +14,7 @@ import pytest
 
 from lithobrake import emulator
 from lithobrake.chaos import Distribution, LogUniform, Normal, Uniform
-from lithobrake.emulator import Emulator
+from lithobrake.emulator import Emulator, fitting, ridge_ladder
 from lithobrake.export import ExportOptions
 from lithobrake.export.bounce_law import LAW, READERS, write_bounce_law
 from lithobrake.geometry.attitude import AttitudeTerms
@@ -21,6 +22,9 @@ from lithobrake.pipeline.first_touchdown.explorer_tables import tables_of_refits
 from lithobrake.results import NamedEmulator
 from lithobrake.results.table import ExplorerAttitude, Table
 from lithobrake.vocabulary.quantities import ORIENTATION_OUT, Quantity
+
+from ..pipeline.few_terms import few_terms
+from ..quick_studies import quick_studies
 
 RUNS, BEDS = 60, 6
 OUTPUTS = (
@@ -48,6 +52,18 @@ TERMS: dict[str, AttitudeTerms | None] = {
     "cube": AttitudeTerms.of_box(np.array([0.1, 0.1, 0.1])),
     "mesh": AttitudeTerms.of_body(np.array([[2.0, 0.1, 0.0], [0.1, 3.0, 0.2], [0.0, 0.2, 4.0]])),
 }
+
+
+@contextmanager
+def any_fit() -> Iterator[None]:
+    """Emulators are fitted by few penalties and folds, and look for no distant bounds: a law holds what was fitted,
+    well or not. Those with distant bounds have them put in.
+    """
+    with quick_studies(), few_terms(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(ridge_ladder, "PENALTIES", (1e-2, 0.3))
+        patch.setattr(fitting, "FOLDS", 2)
+        patch.setattr(fitting, "with_distant_bounds", lambda runs, terms, matrix: runs)
+        yield
 
 
 class Results(SimpleNamespace):

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from lithobrake.cli import app
-from lithobrake.export import KINDS, ExportOptions, export_study
+from lithobrake.export import KINDS, ExportOptions, export_study, formats
 from lithobrake.export.maps import MapFrame
 from lithobrake.pipeline import run_study
 from lithobrake.results import MovingBodies, StudyResults, open_study
@@ -205,7 +206,8 @@ def test_each_kind_is_written_once(results: StudyResults, tmp_path: Path) -> Non
     shown = [kind for kind in KINDS if kind not in ("vtkhdf", "sheet", "aem", "spk", "bounce-law")]
     kinds = [word for kind in [*shown, "plates"] for word in ("--to", kind)]
     sample = int(results.flights["sample"][0])
-    found = RUNNER.invoke(app, ["export", str(results.folder), *kinds, "--flight", str(sample), "--out", str(tmp_path)])
+    chosen = ["--flight", str(sample), "--step", "600", "--out", str(tmp_path)]
+    found = RUNNER.invoke(app, ["export", str(results.folder), *kinds, *chosen])
     assert found.exit_code == 0, found.output
     written = ["flight_mean.oem", f"flight_{sample}.oem", "landers.czml", "body.plates.txt", "facets.csv"]
     written += ["facets.fits", "impacts.tif", "impacts.geojson", "rest.geojson"]
@@ -216,7 +218,7 @@ def test_each_kind_is_written_once(results: StudyResults, tmp_path: Path) -> Non
 def test_journeys_have_attitudes_and_kernels(delivered: StudyResults, tmp_path: Path) -> None:
     pytest.importorskip("spiceypy")
     words = [word for kind in ("aem", "spk") for word in ("--to", kind)]
-    place = ["--flight", "1", "--flight", "2", "--out", str(tmp_path)]
+    place = ["--flight", "1", "--flight", "2", "--step", "300", "--out", str(tmp_path)]
     found = RUNNER.invoke(app, ["export", str(delivered.folder), *words, *place, "--frame", "icrf"])
     assert found.exit_code == 0, found.output
     written = ["attitude_1.aem", "attitude_2.aem", "flights.bsp", "body.tpc"]
@@ -242,7 +244,7 @@ def test_the_files_stand_in_the_folder_of_the_study_unless_told_otherwise(result
 ])  # fmt: skip
 def test_a_file_of_the_user_is_replaced_when_told(results: StudyResults, tmp_path: Path, kind: str, name: str) -> None:
     (tmp_path / name).write_text("mine")
-    words = ["export", str(results.folder), "--to", "plates", "--to", kind, "--out", str(tmp_path)]
+    words = ["export", str(results.folder), "--to", "plates", "--to", kind, "--step", "600", "--out", str(tmp_path)]
     found = RUNNER.invoke(app, words)
     assert (found.exit_code, found.stdout) == (2, "")
     assert found.stderr.startswith(f"{tmp_path / name} exists; choose another folder with --out, or replace")
@@ -329,6 +331,7 @@ def test_any_run_is_landed_again_once_for_its_frames(
         return land(results, run, **others)
 
     monkeypatch.setattr(StudyResults, "landing_bodies", counted)
+    monkeypatch.setattr(formats, "contact_sheet", partial(formats.contact_sheet, picture_count=2))
     written = exported(soil_results, tmp_path, "--to", "vtkhdf", "--to", "sheet", "--run", key[:12])
     assert written == ["bed_0.vtkhdf", f"landing_{key[:12]}.png", f"landing_{key[:12]}.vtkhdf"]
     assert asked == [key[:12]]

@@ -52,8 +52,8 @@ def test_grains_that_pull_on_each_other_lie_looser(monkeypatch: pytest.MonkeyPat
     """So beds take more volume where gravity is less [Keulen-2026]; without a pull they do not."""
     import packing_and_cohesion as packing
 
-    monkeypatch.setattr(packing, "WIDTH", 5.0)
-    monkeypatch.setattr(packing, "DEPTH", 6.0)
+    monkeypatch.setattr(packing, "WIDTH", 4.0)
+    monkeypatch.setattr(packing, "DEPTH", 5.0)
     kind = packing.KINDS["glass"]
     fraction = {}
     for pull in (0.0, 30.0):
@@ -99,7 +99,7 @@ def test_a_fast_ball_throws_grains_and_none_leaves_faster_than_a_pair(
     """Ejecta begin with speed [Brisset-2018]; a bed gives back less than the restitution of its grains."""
     import who_rebounds
 
-    kind = replace(who_rebounds.KINDS["6 mm"], grain=0.007, width=0.05, depth=0.018)
+    kind = replace(who_rebounds.KINDS["6 mm"], grain=0.007, width=0.042, depth=0.015)
     monkeypatch.setitem(who_rebounds.KINDS, "6 mm", kind)
     slow, fast = (who_rebounds.drop(tmp_path, "6 mm", froude, 0) for froude in (1.0, 30.0))
     assert slow["ejecta"] == 0

@@ -30,7 +30,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tables = models.small_study()
     tables["expansion"] |= {"fit": "best", "screening_level": 2}
     tables["monte_carlo"]["scatter"] = True
-    tables["hard_ground"] = {"count": 10}
+    tables["hard_ground"] = {"count": 4}
     tables["impact"]["speed"] = {"distribution": "uniform", "lower": 0.1, "upper": 0.2}
     out = tmp_path_factory.mktemp("keys") / "out"
     lithobrake.run(tables, out, workers=1, model=models.bounce, report=False)

@@ -2,6 +2,8 @@
 
 import importlib
 import math
+import tempfile
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -30,10 +32,16 @@ DISTANCE, PERIOD = 1.15, 40_920.0  # km, s
 
 def write_kernels(folder: Path) -> list[Path]:
     """Constants, leap seconds, and an ephemeris of Dimorphos on a circle about Didymos in its equator."""
-    spice = importlib.import_module("spiceypy")
     paths = [folder / name for name in ("didymos.tpc", "leap.tls", "didymos.bsp")]
-    paths[0].write_text(PCK)
-    paths[1].write_text(LSK)
+    for path, content in zip(paths, (PCK.encode(), LSK.encode(), _ephemeris()), strict=True):
+        path.write_bytes(content)
+    return paths
+
+
+@cache
+def _ephemeris() -> bytes:
+    """What the file of the ephemeris holds, which takes long to write."""
+    spice = importlib.import_module("spiceypy")
     times = np.linspace(8.4e8, 8.5e8, 20001)
     angle = 2.0 * np.pi * times / PERIOD
     pole_ra, pole_dec = math.radians(69.327), math.radians(-72.725)
@@ -44,8 +52,10 @@ def write_kernels(folder: Path) -> list[Path]:
     across = np.cross(pole, node)
     along = np.cos(angle)[:, None] * node + np.sin(angle)[:, None] * across
     speed = DISTANCE * 2.0 * np.pi / PERIOD * (-np.sin(angle)[:, None] * node + np.cos(angle)[:, None] * across)
-    handle = spice.spkopn(str(paths[2]), "test", 0)
     states = np.ascontiguousarray(np.concatenate([DISTANCE * along, speed], axis=1))
-    spice.spkw09(handle, 120065803, 920065803, "J2000", times[0], times[-1], "orbit", 7, len(times), states, times)
-    spice.spkcls(handle)
-    return paths
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "didymos.bsp"
+        handle = spice.spkopn(str(path), "test", 0)
+        spice.spkw09(handle, 120065803, 920065803, "J2000", times[0], times[-1], "orbit", 7, len(times), states, times)
+        spice.spkcls(handle)
+        return path.read_bytes()

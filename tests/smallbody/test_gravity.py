@@ -4,6 +4,7 @@ import io
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -85,12 +86,13 @@ def test_a_slanted_facet_has_half_the_laplacian_and_holds_no_point():
         np.array([(0, 0, 0), (2, 0, 0), (0, 2, 0), (0, 0, 2)]) + 0.3, [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     )
     for shape in (tetrahedron, didymos(partner=False).shape):
-        body, corners = Body(shape, mass=1.0, spin_period=math.inf), shape.vertices[shape.faces]
+        body, which = Body(shape, mass=1.0, spin_period=math.inf), slice(None, None, 3 if len(shape.faces) > 100 else 1)
+        corners = shape.vertices[shape.faces[which]]
         points = np.einsum("fkc,fci->fki", np.random.default_rng(1).dirichlet([1, 1, 1], (len(corners), 3)), corners)
         inside = -4.0 * math.pi * GRAVITATIONAL_CONSTANT * body.density
         assert body.laplacian(points) / inside == pytest.approx(np.full(points.shape[:2], 0.5), abs=1e-9)
         assert not shape.contains(points).any()
-        away = 1e-9 * shape.radius * shape.normals[:, None]
+        away = 1e-9 * shape.radius * shape.normals[which, None]
         assert shape.contains(points - away).all()
 
 
@@ -346,10 +348,11 @@ def test_table_that_cannot_be_kept_is_made_in_memory(cube, folder, caplog):
     assert again.tobytes() == values.tobytes()
 
 
+@cache
 def bumpy(gravity_facets: int | None = None) -> Shape:
-    """A body of 8192 facets with hills of 3 %, some 800 m across."""
+    """A body of 4608 facets with hills of 3 %, some 800 m across."""
     pytest.importorskip("fast_simplification")
-    directions, faces = sphere_mesh(32)
+    directions, faces = sphere_mesh(24)
     hills = 1.0 + 0.03 * np.sin(9.0 * directions[:, :1]) * np.cos(7.0 * directions[:, 1:2])
     return Shape(directions * [400.0, 380.0, 300.0] * hills, faces, gravity_facets=gravity_facets)
 

@@ -266,7 +266,8 @@ def among_stars(body: Body, ground: int, time: float, spin: np.ndarray) -> tuple
 def test_landers_on_both_grounds_go_as_each_alone() -> None:
     """To the last bit, also those of them that change over."""
     body, every = thrown_between(0.08)
-    for one in (0, 2, 4):
+    assert every.ground[0] != every.ground[2]
+    for one in (0, 2):
         origin, axes = body.local_frame(np.linspace(-20.0, 20.0, 5), np.linspace(-30.0, 30.0, 5))
         launch = Launch(origin[one], 0.08 * axes[one, 2], spin=(1e-3, 2e-3, -1e-3))
         alone = hop(body, launch, HardSurface(0.5, 0.7, 0.5), 4e5, friction=0.6, gravity="exact", threads=1)

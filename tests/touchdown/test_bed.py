@@ -3,9 +3,11 @@
 import json
 import logging
 import os
+import pickle
 import signal
 import subprocess
 import sys
+import threading
 import time
 from dataclasses import replace
 from decimal import Decimal, localcontext
@@ -143,10 +145,10 @@ def test_bed_survives_its_file(bed, tmp_path):
     assert np.array_equal(bed.frames["position"], other.frames["position"])
 
 
-def test_same_seed_same_bits_other_seed_other_bed(bed, recipe):
-    again, other = (pour_bed(recipe(seed=seed)) for seed in (bed.seed, bed.seed + 1))
-    assert np.array_equal(bed.position, again.position)
-    assert not np.array_equal(bed.position, other.position)
+def test_same_seed_same_bits_other_seed_other_bed(recipe):
+    first, again, other = (pour_bed(recipe(seed=seed, grain_count=8, width=(0.25, 0.25))) for seed in (6, 6, 7))
+    assert np.array_equal(first.position, again.position)
+    assert not np.array_equal(first.position, other.position)
 
 
 def test_a_bed_in_which_a_grain_creeps_on_is_poured_anew(recipe, monkeypatch):
@@ -326,54 +328,62 @@ def test_a_size_that_is_none_is_refused(library, recipe, tmp_path, monkeypatch, 
         stored_or_poured(recipe(), tmp_path / "bed.h5", never)
 
 
-# A process that asks for the bed of a seed and pours, slowly, what lies in a file.
+# A process that asks for beds of a recipe, again and again, and pours, slowly, what lies in a file.
 PROCESS = """
-import json, sys, time
+import json, pickle, sys, time
+from dataclasses import replace
 from pathlib import Path
-sys.path.insert(0, {tests!r})
-from touchdown.conftest import small_recipe
 from lithobrake.touchdown import Bed, stored_or_poured
-bed = Bed.load({bed!r})
+home = Path(sys.argv[1])
+bed, recipe = Bed.load(home / "ready.h5"), pickle.loads((home / "recipe").read_bytes())
+for line in sys.stdin:
+    seed, name, seconds = json.loads(line)
 
-def pour():
-    Path({started!r}).touch()
-    time.sleep(float(sys.argv[2]))
-    return bed
+    def pour():
+        (home / f"started_{seed}").touch()
+        time.sleep(seconds)
+        return bed
 
-print("ready", flush=True)
-sys.stdin.readline()
-print(json.dumps(stored_or_poured(small_recipe(seed=7), Path(sys.argv[1]), pour)))
+    print(json.dumps(stored_or_poured(replace(recipe, seed=seed), home / name, pour)), flush=True)
 """
 
 
-@pytest.fixture
-def process(library, bed, tmp_path):
-    """Start a process that waits for a word and then asks for a bed, which takes so many seconds to pour."""
-    bed.save(tmp_path / "ready.h5")
-    started = tmp_path / "started"
-    script = PROCESS.format(tests=str(Path(__file__).parents[1]), bed=str(tmp_path / "ready.h5"), started=str(started))
-    running = []
+@pytest.fixture(scope="module")
+def home(bed, recipe, tmp_path_factory):
+    """The folder of two processes, with a library of their own."""
+    place = tmp_path_factory.mktemp("processes")
+    bed.save(place / "ready.h5")
+    (place / "recipe").write_bytes(pickle.dumps(recipe()))
+    return place
 
-    def start(number: int, seconds: float) -> "subprocess.Popen[str]":
-        words = [sys.executable, "-c", script, str(tmp_path / f"out_{number}.h5"), str(seconds)]
-        one = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        running.append(one)
-        assert one.stdout.readline() == "ready\n"
-        return one
 
-    yield start
-    for one in running:
+@pytest.fixture(scope="module")
+def processes(home):
+    """Two that have one library and are asked for beds."""
+    environment = os.environ | {"LITHOBRAKE_CACHE": str(home / "cache"), "LITHOBRAKE_BED_LIBRARY_GB": "0.001"}
+    words = [sys.executable, "-c", PROCESS, str(home)]
+    both = [
+        subprocess.Popen(words, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
+    yield both
+    for one in both:
         one.kill()
         one.communicate()
 
 
-def ask(one: "subprocess.Popen[str]") -> None:
-    one.stdin.write("\n")
+def ask(one: "subprocess.Popen[str]", seed: int, name: str, seconds: float) -> None:
+    """Ask for the bed of a seed in a file of this name, which takes so many seconds to pour."""
+    one.stdin.write(json.dumps([seed, name, seconds]) + "\n")
     one.stdin.flush()
 
 
 def answer(one: "subprocess.Popen[str]") -> bool:
-    return bool(json.loads(one.communicate(timeout=60)[0]))
+    late = threading.Timer(60.0, one.kill)
+    late.start()
+    line = one.stdout.readline()
+    late.cancel()
+    return bool(json.loads(line))
 
 
 def wait_for(path: Path) -> None:
@@ -384,20 +394,23 @@ def wait_for(path: Path) -> None:
     raise AssertionError(f"{path} did not come")
 
 
-def test_of_two_processes_one_pours_and_the_other_waits_for_it(process, tmp_path):
-    both = [process(number, 0.5) for number in (1, 2)]
-    for one in both:
-        ask(one)
-    assert sorted(answer(one) for one in both) == [False, True]
-    assert (tmp_path / "out_1.h5").read_bytes() == (tmp_path / "out_2.h5").read_bytes()
+def test_of_two_processes_one_pours_and_the_other_waits_for_it(processes, home):
+    # Both have begun once they have answered, and are asked together.
+    for number, one in enumerate(processes):
+        ask(one, 10 + number, "first.h5", 0.0)
+    assert [answer(one) for one in processes] == [True, True]
+    for number, one in enumerate(processes):
+        ask(one, 7, f"out_{number}.h5", 0.5)
+    assert sorted(answer(one) for one in processes) == [False, True]
+    assert (home / "out_0.h5").read_bytes() == (home / "out_1.h5").read_bytes()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="other systems have no such locks")
-def test_a_process_that_dies_while_it_pours_leaves_its_turn_to_the_next(process, tmp_path):
-    first, second = process(1, 600.0), process(2, 0.0)
-    ask(first)
-    wait_for(tmp_path / "started")
-    ask(second)
+def test_a_process_that_dies_while_it_pours_leaves_its_turn_to_the_next(processes, home):
+    first, second = processes
+    ask(first, 8, "lost.h5", 600.0)
+    wait_for(home / "started_8")
+    ask(second, 8, "next.h5", 0.0)
     first.send_signal(signal.SIGKILL)
     assert answer(second)
-    assert (tmp_path / "out_2.h5").is_file()
+    assert (home / "next.h5").is_file()

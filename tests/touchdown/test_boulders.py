@@ -168,7 +168,7 @@ def test_spheres_rest_on_ground_that_repeats_and_are_landed_on(
     monkeypatch.setattr(sys, "path", [str(VALIDATION), *sys.path])
     from sphere_beds import SphereBed, pour_spheres
 
-    asked = recipe(sides="periodic", width=(0.52, 0.56), grain_count=48,
+    asked = recipe(sides="periodic", width=(0.5, 0.5), grain_count=32,
         sizes=GrainSizes(distribution="constant", lower=0.1, upper=0.1))  # fmt: skip
     rock = replace(asked.material, rolling_friction=0.1)
     poured = pour_spheres(replace(asked, material=rock))
