@@ -21,8 +21,12 @@ from lithobrake.campaign.worker import pickled
 from lithobrake.emulator import form_choice
 from lithobrake.pipeline import study_run
 from lithobrake.pipeline.commands import emulator_job, rare_landings
+from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.report import reports
 from lithobrake.report.figures.style import STYLE
+
+# Parts of the path of a flight, each of which is flown from its start.
+PATH_PARTS = 16
 
 
 class Unsynced(sqlite3.Connection):
@@ -85,7 +89,8 @@ def blank_pictures(*kinds: str) -> Iterator[None]:
 def quick_studies() -> Iterator[None]:
     """Emulators are fitted anew without each quarter of the beds, and not without each bed; pictures are coarse; a
     study of one worker makes its runs in this process; nothing that this process writes waits for the disk. Half-widths
-    that a plan expects are those of a tenth of the studies that are made up for them.
+    that a plan expects are those of a tenth of the studies that are made up for them, and paths of flights have few
+    places.
 
     What an emulator is worth is tested in tests/emulator, how pages look in tests/report, processes in tests/campaign,
     and expected half-widths in tests/analysis.
@@ -93,6 +98,7 @@ def quick_studies() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(form_choice, "MOST_FOLDS", 4)
         patch.setattr(half_width, "STUDIES", 40)
+        patch.setattr(flights, "PARTS", PATH_PARTS)
         patch.setitem(STYLE, "savefig.dpi", 50)
         patch.setattr(os, "fsync", lambda file: None)
         patch.setattr(sqlite3, "connect", partial(sqlite3.connect, factory=Unsynced))

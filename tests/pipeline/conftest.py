@@ -6,11 +6,10 @@ from pathlib import Path
 import pytest
 
 import lithobrake
-from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.results import StudyResults
 
 from ..quick_studies import blank_pictures, quick_studies
-from .few_terms import FEW_PARTS, few_terms
+from .few_terms import few_terms
 from .journeys.bouncing_lander import bounce, journey_tables
 
 
@@ -25,8 +24,7 @@ def quick() -> Iterator[None]:
 def journeys_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a study of 48 journeys, five of which do not end at rest; nobody writes to it but its report."""
     folder = tmp_path_factory.mktemp("journeys") / "study"
-    with quick_studies(), few_terms(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(flights, "PARTS", FEW_PARTS)
+    with quick_studies(), few_terms():
         lithobrake.run(journey_tables(), folder, workers=1, model=bounce, report=False)
     return folder
 

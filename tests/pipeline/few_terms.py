@@ -10,7 +10,7 @@ from lithobrake.pipeline import site_arrivals, site_grid
 from lithobrake.pipeline.answer import emulated_ends, journey_limit_states, option_answers, question_answers
 from lithobrake.pipeline.commands import emulator_job, requirement, site_maps
 from lithobrake.pipeline.expansion import expansion_samples
-from lithobrake.pipeline.first_touchdown import emulator, flights
+from lithobrake.pipeline.first_touchdown import emulator
 from lithobrake.pipeline.journeys import (
     delivered_landers,
     delivery_options,
@@ -21,8 +21,6 @@ from lithobrake.pipeline.journeys import (
 
 # Refits of an emulator, where studies have fifty.
 REFITS = 20
-# Parts of the path of a flight, each of which is flown from its start.
-FEW_PARTS = 16
 WITH_REFITS = (
     site_grid, emulated_ends, question_answers, option_answers, journey_limit_states, site_maps, expansion_samples,
     emulator, delivery_options, first_arrivals, touchdown_emulator, delivered_landers, site_arrivals,
@@ -55,7 +53,7 @@ def few_terms() -> Iterator[None]:
 @contextmanager
 def fewest_terms() -> Iterator[None]:
     """Emulators of studies whose tests ask only that there is one choose among next to nothing and follow each lander
-    twice; paths of flights have few points.
+    twice.
     """
     with few_terms(), pytest.MonkeyPatch.context() as patch:
         patch.setattr(mean_law, "MOST_TERMS", 8)
@@ -65,7 +63,6 @@ def fewest_terms() -> Iterator[None]:
         patch.setattr(law, "INVERSE_PENALTIES", (1e-2,))
         for module in (emulated_journeys, emulated_ends):
             patch.setattr(module, "COPIES", 2)
-        patch.setattr(flights, "PARTS", FEW_PARTS)
         for module in WITH_REFITS:
             patch.setattr(module, "REFIT_COUNT", REFITS // 2)
         yield

@@ -22,6 +22,7 @@ from lithobrake.results import StudyResults
 from lithobrake.results.study_files import json_values
 from lithobrake.study import check_tables
 
+from ..quick_studies import PATH_PARTS
 from ..report.page_scripts import answer_of, explorer_data, needs_node
 from ..synthetic_landings import SPEED_LIMIT, WEAK, random_soils
 from .coarse_bodies import coarse_bodies
@@ -106,7 +107,7 @@ def test_the_share_of_the_explorer_over_the_whole_law_is_that_of_the_emulator(re
 
 def test_the_ways_of_flights_lead_from_the_site_to_their_ends(results: StudyResults) -> None:
     (places, status), flights = results.flight_paths, results.flights
-    assert places.shape == (16, 193, 3)
+    assert places.shape == (16, PATH_PARTS + 1, 3)
     assert list(status) == list(flights["status"][:16])
     down = np.array(status) == "impact"
     ends = places[down, -1]

@@ -10,7 +10,6 @@ import pytest
 import lithobrake
 from lithobrake.analysis.unseen_event import even_limit
 from lithobrake.pipeline.answer.question_answers import limit_state_results
-from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.pipeline.site import Site
 from lithobrake.pipeline.study_folder import StudyFolder
 from lithobrake.results import StudyResults
@@ -18,7 +17,7 @@ from lithobrake.results.study_files import json_values
 from lithobrake.study import check_tables
 
 from ...synthetic_landings import OUTPUT_NAMES, WEAK, random_soils
-from ..few_terms import FEW_PARTS, fewest_terms
+from ..few_terms import fewest_terms
 from ..synthetic_lander import SyntheticLander, synthetic_tables
 
 # About a tenth and a two-hundredth of the landers that leave are faster [m/s].
@@ -31,12 +30,10 @@ CONDITIONS = {
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
-    """A study of 150 landings, to its page, on which paths of flights have few places."""
+    """A study of 150 landings, to its page."""
     changes = {"hard_ground": {"count": 0}, "flight": {"flight_count": 100}}
     tables = synthetic_tables(design={"run_count": 150}, limit_states=CONDITIONS, **changes)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(flights, "PARTS", FEW_PARTS)
-        return lithobrake.run(tables, tmp_path_factory.mktemp("limits") / "out", workers=1, model=SyntheticLander())
+    return lithobrake.run(tables, tmp_path_factory.mktemp("limits") / "out", workers=1, model=SyntheticLander())
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,6 @@
 import json
 import math
 import sys
-from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
 from typing import Any
@@ -19,7 +18,6 @@ from lithobrake.pipeline import StudyFolder, stage_keys
 from lithobrake.pipeline.design.drawn_design import DrawnDesign
 from lithobrake.pipeline.expansion.expansion_samples import Scatter, outcome_model
 from lithobrake.pipeline.expansion.expansions import points
-from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.pipeline.job import Job, Silent
 from lithobrake.pipeline.runs.landings import drawn_rows
 from lithobrake.pipeline.runs.run_table import DesignRuns
@@ -31,7 +29,6 @@ from lithobrake.vocabulary.quantities import OUTPUTS, PLACE
 from ...paper_tables import paper_tables
 from ...report.browser import browser_page, needs_browser
 from ...report.page_scripts import answer_of, explorer_data, needs_node
-from ..few_terms import FEW_PARTS
 from ..synthetic_lander import synthetic_tables
 
 # Two of the outputs scatter together, by a tenth of a millimetre a second along x and twice that upward.
@@ -133,14 +130,6 @@ def test_another_number_of_runs_a_point_makes_again_from_the_screening_on() -> N
     after = stage_keys(check_tables(tables, Path()))
     names = [stage.name for stage in STAGES if stage.files(study)]
     assert [name for name in names if before[name] == after[name]] == ["bed", "landing"]
-
-
-@pytest.fixture(scope="module", autouse=True)
-def few_places() -> Iterator[None]:
-    """Paths of flights have few places."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(flights, "PARTS", FEW_PARTS)
-        yield
 
 
 @pytest.fixture(scope="module")

@@ -10,11 +10,9 @@ import pytest
 
 import lithobrake
 from lithobrake.emulator import training_runs
-from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.results import StudyResults
 
 from ...paper_tables import with_keys
-from ..few_terms import FEW_PARTS
 
 # Journeys that end otherwise than at rest, by what their touchdown of this number does.
 FAILS, STUCK, LEAVES = {5: 1}, {11: 1}, {17: 0, 29: 0, 41: 0}
@@ -86,9 +84,8 @@ def run_without_emulator(
     tables: dict[str, Any], folder: Path, model: Any = bounce, report: bool = False
 ) -> StudyResults:
     """Run a study to its summary, or its page, as if too few landers had left the ground for an emulator, which would
-    take most of its time, and with paths of flights of few points.
+    take most of its time.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(training_runs, "FEWEST", 1_000_000)
-        patch.setattr(flights, "PARTS", FEW_PARTS)
         return lithobrake.run(tables, folder, workers=1, model=model, report=report)
