@@ -16,6 +16,7 @@ import h5py
 import pytest
 
 from lithobrake.pipeline import STAGES
+from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.results import open_study
 from lithobrake.results.study_files import json_values
 from lithobrake.results.summary import Summary
@@ -41,6 +42,7 @@ kept_outputs = ["speed_out"]
 test_count = 6
 """
 SCREENING_RUNS, TEST_RUNS = 13, 6
+PATH_PARTS = flights.PARTS
 FILES = ("study.toml", "beds/bed_0.h5", "landing.h5", "runs.sqlite", "screening.json", "refined.json", "scores.json",
     "samples.h5", "flights.csv", "rest.csv", "summary.json", "report/index.html")  # fmt: skip
 
@@ -75,8 +77,9 @@ def study(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def quick() -> Iterator[None]:
-    """One worker is this process."""
-    with quick_studies(), blank_pictures():
+    """One worker is this process. Paths have as many places as those of processes of their own, to be compared."""
+    with quick_studies(), blank_pictures(), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(flights, "PARTS", PATH_PARTS)
         yield
 
 
