@@ -34,12 +34,13 @@ def compile_kernels(tell: Callable[..., None], busy: int = 0, joined: bool = Fal
     tell: called as the progress of a job, with how many kernels are done, of how many. busy: cores that compile
     something else. joined: for landers with parts on hinges.
     """
-    from lithobrake.compilation.compiled import disk_cache, lies_on_disk, watched
+    from lithobrake.compilation.compiled import Kernel, disk_cache, lies_on_disk, watched
     from lithobrake.dem.example_world import step_locally, step_together
     from lithobrake.dem.stepping.time_loop import advance
 
     tell(0, 1, WHAT)
-    if disk_cache("dem").keeps and not lies_on_disk(advance):
+    # Where Numba is told to compile nothing, they are plain functions.
+    if isinstance(advance, Kernel) and disk_cache("dem").keeps and not lies_on_disk(advance):
         _compile_apart(tell, 2 if available_cores() >= 2 + busy else 1, joined)
     # Loads what lies on disk, and compiles the rest.
     with watched("dem", lambda done, total: tell(done, total, WHAT, f"{done} of {total} kernels")):
