@@ -8,12 +8,13 @@ from page import table, two_digits
 
 PAGE = ROOT / "docs" / "performance.md"
 MARKS = ("<!-- Made by benchmarks/write_times.py. -->\n\n", "\n\n<!-- Here its table ends. -->")
-# Studies of showcase/ that ran as a whole, by what was run, and the grains of each of their beds.
+# Studies of showcase/ that ran as a whole: what was run, the grains of each of their beds, and the file of their times.
+# That of the paper was run again from nothing, on another bed than the one that is kept.
 STUDIES = {
-    "mission": ("`scenarios/mission.toml`", "96 grains"),
-    "first_bounce": ("`scenarios/first_bounce.toml`", "96 grains"),
-    "drawn_700": ("`validation/studies/drawn_700.toml`", "400 grains"),
-    "paper": ("`scenarios/paper.toml`", "1500 grains"),
+    "mission": ("`scenarios/mission.toml`", "96 grains", "showcase/mission/origin.json"),
+    "first_bounce": ("`scenarios/first_bounce.toml`", "96 grains", "showcase/first_bounce/origin.json"),
+    "drawn_700": ("`validation/studies/drawn_700.toml`", "400 grains", "showcase/drawn_700/origin.json"),
+    "paper": ("`scenarios/paper.toml`", "1500 grains", "validation/paper_study_again.json"),
 }
 Row = list[str]
 
@@ -24,12 +25,8 @@ def seconds(value: float) -> str:
 
 def study(name: str) -> Row:
     """A study of showcase/: its landings, its beds, and its time on a machine that others used too."""
-    folder = ROOT / "showcase" / name
-    made, results = read_document(folder / "origin.json"), read_document(folder / "summary.json")["results"]
-    made, (words, grains) = made.get("landings", made), STUDIES[name]
-    if name == "paper":
-        # Run again from nothing, on another bed than the one that is kept.
-        made = read_document(ROOT / "validation" / "paper_study_again.json")
+    folder, (words, grains, times) = ROOT / "showcase" / name, STUDIES[name]
+    made, results = read_document(ROOT / times), read_document(folder / "summary.json")["results"]
     landings = len({row["key"] for path in folder.glob("runs/*.csv") for row in read_rows(path, {}, others=str)})
     beds = f"{len(results['beds'])} beds" if len(results["beds"]) > 1 else "one bed"
     journeys = f"{results['journeys']} journeys, " if landings > results["journeys"] > 0 else ""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lithobrake import smallbody
 from lithobrake.results import StudyResults, Table
-from lithobrake.smallbody import Body, Flights, Partner, Shape, fly
+from lithobrake.smallbody import Body, Flights, Shape, fly
 from lithobrake.smallbody.built_in_bodies import ball_partner
 from lithobrake.study import BUILT_IN_BODIES
 from lithobrake.vocabulary.array_types import Array
@@ -238,7 +238,8 @@ def study_body(results: StudyResults, mass: float, spin_period: float) -> Body:
     """
     refuse_rotation(results)
     site, name = results.study["site"], body_name(results)
-    partner = _partner(site["body"], site["partner"]) if site["body"] in BUILT_IN_BODIES else None
+    is_built_in = site["body"] in BUILT_IN_BODIES
+    partner = smallbody.built_in_body(site["body"], partner=site["partner"]).partner if is_built_in else None
     vertices, faces = results.body_shape
     # A study of before this key has none.
     shape = _shape(vertices.tobytes(), faces.tobytes(), name, site.get("gravity_facets"))
@@ -257,11 +258,6 @@ def _shape(vertices: bytes, faces: bytes, name: str, gravity_facets: int | None)
         name=name,
         gravity_facets=gravity_facets,
     )
-
-
-@lru_cache(maxsize=2)
-def _partner(name: str, partner: bool) -> Partner | None:
-    return smallbody.built_in_body(name, partner=partner).partner
 
 
 def refuse_rotation(results: StudyResults) -> None:

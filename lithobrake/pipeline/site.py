@@ -259,11 +259,11 @@ class Site:
 def _body(study: Study) -> "Body":
     """The body with its built-in mass and spin or, where it comes from a mesh, with the medians of the study."""
     from lithobrake.smallbody import Body
-    from lithobrake.smallbody.built_in_bodies import ball_partner
+    from lithobrake.smallbody.built_in_bodies import ball_partner, built_in_body
 
     site = study.site
     if site.body in BUILT_IN_BODIES:
-        return _built_in(site.body, site.partner, site.extents)
+        return built_in_body(site.body, partner=site.partner, extents=site.extents)
     mesh, given = labelled_mesh(Path(site.body)), study.site_values()
     # A mesh, or its label, that has changed since is read again.
     shape = _read_shape(mesh, mesh_unit(mesh, site.unit), site.gravity_facets, file_stamp(mesh))
@@ -272,13 +272,6 @@ def _body(study: Study) -> "Body":
     if site.partner_body is None:
         return body
     return replace(body, partner=ball_partner(body, **site.partner_body.model_dump()))
-
-
-@lru_cache(maxsize=4)
-def _built_in(name: str, partner: bool, extents: tuple[float, float, float] | None) -> "Body":
-    from lithobrake.smallbody import built_in_body
-
-    return built_in_body(name, partner=partner, extents=extents)
 
 
 # Moments of the body are those of its shape, and the orbit hardly depends on its mass: that of the median is taken.

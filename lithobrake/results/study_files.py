@@ -39,6 +39,8 @@ OF_SAMPLES = (
     file_names.EXPLORER_FILE,
 )
 T = TypeVar("T")
+# What reads and writes values of a kind.
+_FORMS: dict[type, "TypeAdapter[Any]"] = {}
 
 
 def folder_of_paths(folder: Path, remedy: str) -> Path:
@@ -181,9 +183,6 @@ class StudyFiles:
 def json_values(value: Any) -> Any:
     """Results as objects, lists, numbers, words and None. Raises ValueError for a value that is none of its field."""
     return _form(type(value)).dump_python(value, mode="json", by_alias=True, exclude_defaults=True, warnings="error")
-
-
-_FORMS: dict[type, "TypeAdapter[Any]"] = {}
 
 
 def _form(kind: type[Any]) -> "TypeAdapter[Any]":

@@ -1,8 +1,6 @@
 """A finished study with flights; worker processes import its model by name, so this folder is put on the path."""
 
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +11,6 @@ sys.path.insert(0, str(Path(__file__).parent))
 import export_models
 
 import lithobrake
-from lithobrake.pipeline.first_touchdown import flights
 from lithobrake.results import StudyResults
 
 from ..pipeline.journeys.bouncing_lander import run_without_emulator
@@ -23,16 +20,8 @@ from ..report.finished_studies import asked_study
 from .delivered import delivered_tables
 
 
-@contextmanager
-def few_places() -> Iterator[None]:
-    """Paths of flights have few places, each of which is flown to from the start: nothing of them is passed on."""
-    with quick_studies(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(flights, "PARTS", 4)
-        yield
-
-
 def finished(tables: dict[str, Any], out: Path) -> StudyResults:
-    with few_places():
+    with quick_studies():
         lithobrake.run(tables, out, workers=1, model=export_models.bounce, report=False)
     return lithobrake.open_study(out)
 
@@ -46,7 +35,7 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
 def delivered(tmp_path_factory: pytest.TempPathFactory) -> StudyResults:
     """Those of a study of journeys from states along ICRF."""
     home = tmp_path_factory.mktemp("delivered")
-    with few_places():
+    with quick_studies():
         run_without_emulator(delivered_tables(home), home / "out")
     # Nothing that is passed on needs the file of the states.
     (home / "states.csv").unlink()

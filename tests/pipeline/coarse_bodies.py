@@ -5,7 +5,6 @@ from contextlib import contextmanager
 
 import pytest
 
-from lithobrake.pipeline import site
 from lithobrake.smallbody import built_in_bodies
 
 
@@ -14,6 +13,6 @@ def coarse_bodies() -> Iterator[None]:
     """240 facets in the place of 1920: what is sought among facets is found sooner."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(built_in_bodies, "RINGS", 5)
-        site._built_in.cache_clear()
+        built_in_bodies._alone.cache_clear()
         yield
-    site._built_in.cache_clear()
+    built_in_bodies._alone.cache_clear()

@@ -8,14 +8,10 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from lithobrake.pipeline.first_touchdown import flights
-
 from ..quick_studies import quick_studies
 
 
 @pytest.fixture(scope="module", autouse=True)
 def quick() -> Iterator[None]:
-    """Paths of flights have few places, each of which is flown to from the start."""
-    with quick_studies(), pytest.MonkeyPatch.context() as patch:
-        patch.setattr(flights, "PARTS", 4)
+    with quick_studies():
         yield
