@@ -1,11 +1,10 @@
-"""What a study needs, imported once by the server whose forks are studies; and Numba knows the types of its kernels.
+"""What a study needs, imported once by the server whose forks are studies.
 
 The faces of packages import nothing before they are asked for something, so files behind them are named.
 """
 
 import matplotlib.figure  # noqa: F401
 import scipy.stats  # noqa: F401
-from numba.core.registry import cpu_target
 
 import lithobrake.chaos.surrogate
 import lithobrake.cli
@@ -18,6 +17,3 @@ import lithobrake.report.reports
 import lithobrake.smallbody.flight
 import lithobrake.touchdown.bed_library
 import lithobrake.touchdown.simulation  # noqa: F401
-
-cpu_target.typing_context.refresh()
-cpu_target.target_context.refresh()
